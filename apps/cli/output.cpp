@@ -1,0 +1,120 @@
+#include "output.h"
+
+#include <gnomon/error.h>
+
+#include "fail.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void print_line(std::string_view start, std::string_view message) {
+    std::string line = fmt::format("{}: {}", start, message);
+    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+    std::replace_if(line.begin(), line.end(), is_control, '?');
+    line += '\n';
+    std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+/// Something can be made in the folder of `path`.
+void require_folder_of(std::string_view flag, const fs::path& path) {
+    const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::exists(parent, error)) {
+        fail_usage("{} {}: the folder {} does not exist; make it first", flag, path.string(),
+                   parent.string());
+    }
+    if (!fs::is_directory(parent, error)) {
+        fail_usage("{} {}: {} is not a folder", flag, path.string(), parent.string());
+    }
+    if (access(parent.c_str(), W_OK | X_OK) != 0) {
+        fail_usage("{} {}: the folder {} cannot be written to: {}", flag, path.string(),
+                   parent.string(), std::strerror(errno));
+    }
+}
+
+}  // namespace
+
+void print(std::string_view text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (written && std::fflush(stdout) == 0) return;
+    if (errno == EPIPE) throw ReaderGone();
+    throw Error(ErrorKind::machine,
+                fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
+}
+
+void print_error(std::string_view message) {
+    print_line("error", message);
+}
+
+void print_warning(std::string_view message) {
+    print_line("warning", message);
+}
+
+void require_output_file(std::string_view flag, const fs::path& path, std::string_view extension) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) {
+        fail_usage("{} {}: is a folder; give the name of a file in it", flag, path.string());
+    }
+    if (path.extension() != extension) {
+        fail_usage("{} {}: the file is a {}; end its name in {}", flag, path.string(),
+                   extension.substr(1), extension);
+    }
+    require_folder_of(flag, path);
+}
+
+void require_output_folder(std::string_view flag, const fs::path& path) {
+    // "out/" names the same folder as "out", but has no file name.
+    const fs::path folder = path.has_filename() ? path : path.parent_path();
+    std::error_code error;
+    if (fs::exists(folder, error)) {
+        if (!fs::is_directory(folder, error)) {
+            fail_usage("{} {}: is a file; give a folder", flag, path.string());
+        }
+        if (fs::equivalent(folder, fs::current_path(error), error)) {
+            fail_usage("{} {}: is the current folder; give one in it, which can be replaced", flag,
+                       path.string());
+        }
+        const bool empty = fs::is_empty(folder, error);
+        if (!empty && !fs::exists(folder / "results.json", error)) {
+            fail_usage("{} {}: holds something else than a report; give another folder", flag,
+                       path.string());
+        }
+    }
+    require_folder_of(flag, folder);
+}
+
+void write_text(const fs::path& path, std::string_view text) {
+    // Beside the target, so that the rename stays within one file system.
+    fs::path temporary = path;
+    temporary += fmt::format(".part{}", getpid());
+    errno = 0;
+    std::ofstream stream(temporary, std::ios::binary);
+    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+    stream.close();
+    std::error_code error;
+    if (stream) {
+        fs::rename(temporary, path, error);
+        if (!error) return;
+    } else {
+        error.assign(errno, std::generic_category());
+    }
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw Error(ErrorKind::machine,
+                fmt::format("{}: cannot be written: {}", path.string(), error.message()));
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,147 @@
+#include <gnomon/lighting.h>
+
+#include "command.h"
+#include "fail.h"
+#include "flags.h"
+#include "help.h"
+#include "output.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace gnomon::cli {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  gnomon render courtyard -o courtyard.png
+  gnomon render model.glb -o frame.png --technique shadow_map --shadow_map.map_size 4096
+  gnomon render model.glb -o frame.png --size 1920x1080 --samples 1024 \
+      --camera eye=8,5,8,target=0,1,0,fov=45 --light sun:elevation=35,azimuth=120
+  gnomon render torches -o frame.png --lights 0,3 --visibility visibility.exr
+
+Without --technique the picture shows the ray-traced truth. Every parameter of a technique is a
+flag; gnomon info lists them.)";
+
+constexpr int kDefaultSamples = 256;
+constexpr int kMaxSamples = 65536;  // TraceOptions::samples
+
+struct RenderFlags {
+    ViewFlags view;
+    LightingOptions lighting;
+    std::string output, visibility, technique;
+    int samples = 0;  ///< 0 = not given
+};
+
+/// visibility.exr for one light; visibility.0.exr, visibility.1.exr for several.
+std::filesystem::path visibility_path(const RenderFlags& flags, std::size_t light,
+                                      std::size_t light_count) {
+    std::filesystem::path path = flags.visibility;
+    if (light_count > 1) path.replace_extension(fmt::format(".{}.exr", light));
+    return path;
+}
+
+void check_flags(const RenderFlags& flags) {
+    require_scene("render", flags.view);
+    if (flags.output.empty()) fail_usage("render: -o is missing, as in -o frame.png");
+    require_output_file("-o", flags.output, ".png");
+    if (!flags.visibility.empty()) require_output_file("--visibility", flags.visibility, ".exr");
+    if (!flags.technique.empty() && flags.samples != 0) {
+        fail_usage(
+            "--samples is for the ray-traced truth; with --technique ray_traced use "
+            "--ray_traced.samples");
+    }
+}
+
+/// The technique of --technique; without it none, and parameters have nothing to set.
+std::vector<TechniqueChoice> choose_technique(const RenderFlags& flags, const Session& session) {
+    if (!flags.technique.empty()) {
+        find_technique(flags.technique);  // one, not a list or "all"
+        return choose_techniques(flags.technique, session);
+    }
+    if (!session.param_flags.empty()) {
+        const ParamFlag& flag = session.param_flags.front();
+        fail_usage("{}: needs --technique {}; without it the ray-traced truth is rendered",
+                   flag.written, flag.technique);
+    }
+    return {};
+}
+
+std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::vector<Light>& lights,
+                                   const std::vector<TechniqueChoice>& choice, int samples,
+                                   ConsoleProgress& progress) {
+    std::unique_ptr<Technique> technique;
+    if (!choice.empty()) {
+        technique = make_technique(context, choice.front().name, choice.front().params);
+        technique->prepare(frame.scene, progress);
+    }
+    std::vector<Visibility> visibilities;
+    for (const Light& light : lights) {
+        progress.check();
+        frame.light = light;
+        visibilities.push_back(
+            technique ? technique->render(frame)
+                      : trace_visibility(context, frame, {.samples = samples}, progress));
+    }
+    return visibilities;
+}
+
+void run_render(const RenderFlags& flags, const Session& session, ConsoleProgress& progress) {
+    check_flags(flags);
+    const std::vector<TechniqueChoice> choice = choose_technique(flags, session);
+    Frame frame;
+    frame.scene = load(flags.view.scene, session, progress);
+    frame.size = flags.view.size;
+    frame.ignore_alpha = flags.view.ignore_alpha;
+    frame.camera = choose_camera(frame.scene, flags.view, session);
+    const std::vector<Light> lights = choose_lights(frame.scene, flags.view, session);
+
+    Context context(context_options(session));
+    const int samples = flags.samples == 0 ? kDefaultSamples : flags.samples;
+    const std::vector<Visibility> visibilities =
+        see_lights(context, frame, lights, choice, samples, progress);
+    std::vector<LitBy> lit_by;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        lit_by.push_back({lights[i], &visibilities[i]});
+    const Image picture = light_picture(context, frame, lit_by, flags.lighting);
+    progress.check();
+    progress.clear();
+    check_validation(context);
+
+    write_png(flags.output, picture);
+    print(fmt::format("picture: {}\n", flags.output));
+    for (std::size_t i = 0; i < lights.size() && !flags.visibility.empty(); ++i) {
+        const std::filesystem::path path = visibility_path(flags, i, lights.size());
+        write_exr(path, visibilities[i].image());
+        print(fmt::format("visibility of {}: {}\n", light_name(lights[i]), path.string()));
+    }
+}
+
+}  // namespace
+
+Command add_render(CLI::App& program) {
+    CLI::App* const app =
+        add_command(program, "render", "Render a scene with the shadows of one technique",
+                    "gnomon render SCENE -o FRAME.png [--technique NAME] [flags]", kExamples);
+    const auto flags = std::make_shared<RenderFlags>();
+    app->add_option("-o,--output", flags->output, "the picture to write")->type_name("FRAME.png");
+    app->add_option("--visibility", flags->visibility,
+                    "also write the visibility of the light, in [0, 1]; of several lights as "
+                    "V.0.exr, V.1.exr")
+        ->type_name("V.exr");
+    app->add_option("--technique", flags->technique,
+                    "how to find the shadows (default: by tracing rays, the truth)")
+        ->type_name("NAME");
+    add_integer(*app, "--samples", flags->samples, {1, kMaxSamples, "rays"},
+                "rays per pixel and light of the truth (default 256; one if the light has no "
+                "extent)");
+    add_view(*app, flags->view);
+    add_lighting(*app, flags->lighting);
+    return {app,
+            [flags](const Session& session, ConsoleProgress& progress) {
+                run_render(*flags, session, progress);
+            },
+            true};
+}
+
+}  // namespace gnomon::cli

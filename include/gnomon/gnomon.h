@@ -1,0 +1,16 @@
+#pragma once
+
+/// All of gnomon but <gnomon/vulkan.h>.
+
+#include <gnomon/context.h>
+#include <gnomon/error.h>
+#include <gnomon/image.h>
+#include <gnomon/light.h>
+#include <gnomon/lighting.h>
+#include <gnomon/math.h>
+#include <gnomon/metrics.h>
+#include <gnomon/progress.h>
+#include <gnomon/report.h>
+#include <gnomon/scene.h>
+#include <gnomon/technique.h>
+#include <gnomon/visibility.h>

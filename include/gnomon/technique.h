@@ -1,0 +1,128 @@
+#pragma once
+
+#include <gnomon/visibility.h>
+
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace gnomon {
+
+/// A parameter's value: a switch, a whole number, a number, or one of a list of words.
+using ParamValue = std::variant<bool, int, double, std::string>;
+
+enum class ParamType { boolean, integer, number, choice };
+
+/// What a technique says about one of its parameters. Flags, documentation and range checks read
+/// it.
+struct ParamInfo {
+    std::string name;  ///< snake_case
+    ParamType type = ParamType::number;
+    ParamValue default_value;
+    double min = 0.0, max = 0.0;       ///< inclusive; integer and number only
+    std::vector<std::string> choices;  ///< choice only
+    std::string unit;                  ///< "texels", "px", "1"; empty for switches and choices
+    std::string meaning;               ///< one line
+};
+
+/// Parameter values by name; what is not named keeps its default.
+class Params {
+public:
+    Params() = default;
+    Params(std::initializer_list<std::pair<const std::string, ParamValue>> values)
+        : values_(values) {}
+    void set(const std::string& name, ParamValue value) { values_[name] = std::move(value); }
+    const std::map<std::string, ParamValue>& values() const { return values_; }
+
+private:
+    std::map<std::string, ParamValue> values_;
+};
+
+/// `text` as a value of `info`'s type, checked against its range.
+/// Throws Error{input} that names `technique`, the parameter, the value and what is allowed.
+ParamValue parse_param(std::string_view technique, const ParamInfo& info, std::string_view text);
+
+/// "4", "0.8", "true" or the word itself.
+std::string to_string(const ParamValue& value);
+
+/// The parameter of that name; dashes count as underscores.
+/// Throws Error{input} that suggests the nearest name when there is none.
+const ParamInfo& find_param(std::string_view technique, std::span<const ParamInfo> params,
+                            std::string_view name);
+
+struct PassTime {
+    std::string name;
+    double ms = 0.0;
+};
+
+/// What the last render() took.
+struct RenderStats {
+    double cpu_ms = 0.0;             ///< recording and host work, waiting for the device left out
+    double gpu_ms = 0.0;             ///< sum of the passes
+    std::vector<PassTime> passes;    ///< device time each, in order
+    std::uint64_t memory_bytes = 0;  ///< held by the technique, the scene's own buffers left out
+};
+
+/// One way to answer: how much of this light does each receiver see?
+class Technique {
+public:
+    virtual ~Technique() = default;
+
+    /// Once per scene: adjacency, acceleration structures, bakes. May take minutes; reports
+    /// progress and can be cancelled. render() prepares by itself when the frame has another scene.
+    virtual void prepare(const Scene& scene, Progress& progress) = 0;
+    void prepare(const Scene& scene);
+
+    /// Once per frame and light: the visibility of `frame.light` at every receiver.
+    /// Throws Error{input} for lights that the technique cannot shadow.
+    virtual void render(const Frame& frame, Visibility& out) = 0;
+    Visibility render(const Frame& frame);
+
+    virtual RenderStats last_render() const = 0;
+};
+
+/// Kinds of light, as bits.
+enum class LightKinds : unsigned {
+    none = 0,
+    directional = 1,
+    point = 2,
+    spot = 4,
+    area = 8,  ///< sphere, disc, rectangle
+    all = 15,
+};
+constexpr LightKinds operator|(LightKinds a, LightKinds b) {
+    return static_cast<LightKinds>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+bool supports(LightKinds kinds, const Light& light);
+
+enum class Penumbra { none, fixed_width, physical };
+
+/// What a technique says about itself before any device exists.
+struct TechniqueInfo {
+    std::string_view name;  ///< "shadow_map": folder, command line, Python and report use this name
+    std::string_view title;                ///< "Shadow map"
+    std::string_view source;               ///< keys into docs/references.bib, separated by commas
+    LightKinds lights = LightKinds::none;  ///< the lights it can shadow; others throw
+    Penumbra penumbra = Penumbra::none;
+    bool honors_alpha = true;  ///< false: alpha masks count as solid
+    const std::vector<ParamInfo>& (*params)() = nullptr;
+    std::unique_ptr<Technique> (*make)(Context&, const Params&) = nullptr;
+};
+
+/// All techniques, in alphabetical order.
+std::span<const TechniqueInfo> techniques();
+
+/// Throws Error{input} that suggests the nearest name when there is none.
+const TechniqueInfo& find_technique(std::string_view name);
+
+/// Throws Error{input} for an unknown technique or parameter and for a value out of range.
+std::unique_ptr<Technique> make_technique(Context& context, std::string_view name,
+                                          const Params& params = {});
+
+}  // namespace gnomon

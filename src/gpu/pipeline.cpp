@@ -1,0 +1,212 @@
+#include "gpu/pipeline.h"
+
+#include "base/check.h"
+
+#include <array>
+#include <utility>
+
+namespace gnomon::gpu {
+
+namespace {
+
+VkDescriptorType descriptor_type(BindingType type) {
+    switch (type) {
+        case BindingType::storage_buffer:
+            return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        case BindingType::storage_image:
+            return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        case BindingType::texture:
+            break;
+    }
+    return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+}
+
+/// A shader module, for as long as a pipeline is being made.
+class ShaderModule {
+public:
+    ShaderModule(const Device& device, std::span<const std::uint32_t> code) : device_(device) {
+        const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                            .codeSize = code.size_bytes(),
+                                            .pCode = code.data()};
+        check(vkCreateShaderModule(device.handle(), &info, nullptr, &module_), "loading a shader");
+    }
+    ~ShaderModule() { vkDestroyShaderModule(device_.handle(), module_, nullptr); }
+    ShaderModule(const ShaderModule&) = delete;
+    ShaderModule& operator=(const ShaderModule&) = delete;
+
+    VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits stage) const {
+        return {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = stage,
+                .module = module_,
+                .pName = "main"};
+    }
+
+private:
+    const Device& device_;
+    VkShaderModule module_ = VK_NULL_HANDLE;
+};
+
+VkPipelineDepthStencilStateCreateInfo depth_stencil(const GraphicsPipelineInfo& info) {
+    VkStencilOpState front{.failOp = VK_STENCIL_OP_KEEP,
+                           .passOp = VK_STENCIL_OP_KEEP,
+                           .depthFailOp = VK_STENCIL_OP_DECREMENT_AND_WRAP,
+                           .compareOp = VK_COMPARE_OP_ALWAYS,
+                           .compareMask = 0xff,
+                           .writeMask = 0xff};
+    VkStencilOpState back = front;
+    back.depthFailOp = VK_STENCIL_OP_INCREMENT_AND_WRAP;
+    return {.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+            .depthTestEnable = info.depth_format != VK_FORMAT_UNDEFINED ? VK_TRUE : VK_FALSE,
+            .depthWriteEnable = info.depth_write ? VK_TRUE : VK_FALSE,
+            .depthCompareOp = info.depth_compare,
+            .stencilTestEnable = info.stencil_count_depth_fail ? VK_TRUE : VK_FALSE,
+            .front = front,
+            .back = back};
+}
+
+}  // namespace
+
+void Pipeline::make_layout() {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    for (const BindingType type : layout_info_.bindings) {
+        bindings.push_back({.binding = static_cast<std::uint32_t>(bindings.size()),
+                            .descriptorType = descriptor_type(type),
+                            .descriptorCount = 1,
+                            .stageFlags = stages_});
+    }
+    const VkDescriptorSetLayoutCreateInfo set{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
+        .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+        .pBindings = bindings.data()};
+    check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &set_layout_),
+          "creating a descriptor layout");
+    const VkPushConstantRange push{stages_, 0, layout_info_.push_bytes};
+    const VkPipelineLayoutCreateInfo layout{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 1,
+        .pSetLayouts = &set_layout_,
+        .pushConstantRangeCount = layout_info_.push_bytes > 0 ? 1u : 0u,
+        .pPushConstantRanges = &push};
+    check(vkCreatePipelineLayout(device_->handle(), &layout, nullptr, &layout_),
+          "creating a pipeline layout");
+}
+
+Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info)
+    : device_(&device), layout_info_(info.layout) {
+    make_layout();
+    const ShaderModule shader(device, info.code);
+    std::vector<VkSpecializationMapEntry> entries;
+    for (std::uint32_t i = 0; i < info.constants.size(); ++i) {
+        entries.push_back({i, i * 4, 4});
+    }
+    const VkSpecializationInfo constants{
+        .mapEntryCount = static_cast<std::uint32_t>(entries.size()),
+        .pMapEntries = entries.data(),
+        .dataSize = info.constants.size() * 4,
+        .pData = info.constants.data()};
+    VkComputePipelineCreateInfo create{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                       .stage = shader.stage(VK_SHADER_STAGE_COMPUTE_BIT),
+                                       .layout = layout_};
+    create.stage.pSpecializationInfo = &constants;
+    check(
+        vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &create, nullptr, &pipeline_),
+        "creating a compute pipeline");
+}
+
+Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
+    : device_(&device),
+      bind_point_(VK_PIPELINE_BIND_POINT_GRAPHICS),
+      stages_(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT),
+      layout_info_(info.layout) {
+    make_layout();
+    const ShaderModule vertex(device, info.vertex);
+    const bool has_fragment = !info.fragment.empty();
+    const ShaderModule fragment(device, has_fragment ? info.fragment : info.vertex);
+    const std::array stages = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT),
+                               fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
+    const VkVertexInputBindingDescription binding{0, info.vertex_stride,
+                                                  VK_VERTEX_INPUT_RATE_VERTEX};
+    const VkPipelineVertexInputStateCreateInfo input{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+        .vertexBindingDescriptionCount = info.vertex_stride > 0 ? 1u : 0u,
+        .pVertexBindingDescriptions = &binding,
+        .vertexAttributeDescriptionCount = static_cast<std::uint32_t>(info.attributes.size()),
+        .pVertexAttributeDescriptions = info.attributes.data()};
+    const VkPipelineInputAssemblyStateCreateInfo assembly{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    const VkPipelineViewportStateCreateInfo viewport{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1,
+        .scissorCount = 1};
+    const VkPipelineRasterizationStateCreateInfo raster{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .depthClampEnable = info.depth_clamp ? VK_TRUE : VK_FALSE,
+        .polygonMode = VK_POLYGON_MODE_FILL,
+        .lineWidth = 1.0f};
+    const VkPipelineMultisampleStateCreateInfo multisample{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+    const VkPipelineDepthStencilStateCreateInfo depth = depth_stencil(info);
+    const std::vector<VkPipelineColorBlendAttachmentState> attachments(info.color_formats.size(),
+                                                                       {.colorWriteMask = 0xf});
+    const VkPipelineColorBlendStateCreateInfo blend{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = static_cast<std::uint32_t>(attachments.size()),
+        .pAttachments = attachments.data()};
+    const std::array dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                       VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
+    const VkPipelineDynamicStateCreateInfo dynamic{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size()),
+        .pDynamicStates = dynamic_states.data()};
+    const bool stencil = info.depth_format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    const VkPipelineRenderingCreateInfo rendering{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+        .colorAttachmentCount = static_cast<std::uint32_t>(info.color_formats.size()),
+        .pColorAttachmentFormats = info.color_formats.data(),
+        .depthAttachmentFormat = info.depth_format,
+        .stencilAttachmentFormat = stencil ? info.depth_format : VK_FORMAT_UNDEFINED};
+    const VkGraphicsPipelineCreateInfo create{
+        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+        .pNext = &rendering,
+        .stageCount = has_fragment ? 2u : 1u,
+        .pStages = stages.data(),
+        .pVertexInputState = &input,
+        .pInputAssemblyState = &assembly,
+        .pViewportState = &viewport,
+        .pRasterizationState = &raster,
+        .pMultisampleState = &multisample,
+        .pDepthStencilState = &depth,
+        .pColorBlendState = &blend,
+        .pDynamicState = &dynamic,
+        .layout = layout_};
+    check(
+        vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &create, nullptr, &pipeline_),
+        "creating a graphics pipeline");
+}
+
+Pipeline::~Pipeline() {
+    if (device_ == nullptr) return;
+    vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
+    vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);
+    vkDestroyDescriptorSetLayout(device_->handle(), set_layout_, nullptr);
+}
+
+Pipeline::Pipeline(Pipeline&& other) noexcept {
+    *this = std::move(other);
+}
+
+Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(pipeline_, other.pipeline_);
+    std::swap(layout_, other.layout_);
+    std::swap(set_layout_, other.set_layout_);
+    std::swap(bind_point_, other.bind_point_);
+    std::swap(stages_, other.stages_);
+    std::swap(layout_info_, other.layout_info_);
+    return *this;
+}
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <gnomon/scene.h>
+
+#include "gpu/commands.h"
+#include "raster/scene.shared.h"
+
+#include <vector>
+
+namespace gnomon::raster {
+
+/// All instances of one mesh that are wound the same way.
+struct Draw {
+    std::uint32_t mesh = 0;
+    std::uint32_t material = 0;
+    std::uint32_t first_index = 0, index_count = 0, first_vertex = 0;
+    std::uint32_t first_slot = 0, slot_count = 0;  ///< in the instance buffer
+    bool masked = false;
+    bool double_sided = true;
+    bool mirrored = false;
+};
+
+/// A scene in device memory, drawn in few calls: positions apart from the other attributes,
+/// instances of a mesh side by side, draws in the order of their material.
+class GpuScene {
+public:
+    GpuScene(const gpu::Device& device, const Scene& scene);
+
+    const Scene& scene() const { return scene_; }
+    const std::vector<Draw>& draws() const { return draws_; }
+    /// The index into Scene::instances() of a slot of the instance buffer.
+    std::uint32_t instance_at(std::uint32_t slot) const { return order_[slot]; }
+    const gpu::Buffer& positions() const { return positions_; }
+    const gpu::Buffer& indices() const { return indices_; }
+    const gpu::Buffer& instances() const { return instances_; }
+    const gpu::Buffer& slots() const { return slots_; }  ///< slot of Scene::instances()[i]
+    const gpu::Buffer& attributes() const { return attributes_; }
+    const gpu::Buffer& materials() const { return materials_; }
+
+    /// The base-colour texture of a material, white when it has none.
+    gpu::Texture base_color(std::uint32_t material) const;
+
+    std::uint64_t memory_bytes() const;
+
+private:
+    void place_instances(const gpu::Device& device);
+    void upload_meshes(const gpu::Device& device);
+    void upload_materials(const gpu::Device& device);
+
+    Scene scene_;
+    std::vector<Draw> draws_;
+    std::vector<std::uint32_t> order_;
+    gpu::Buffer positions_, indices_, attributes_, instances_, slots_, materials_;
+    std::vector<gpu::Image> textures_;    // Scene::textures() and, last, white
+    std::vector<gpu::Sampler> samplers_;  // one for each of them
+};
+
+/// The pipelines of one pass over the scene. `opaque` binds the instances; `masked` binds
+/// instances, attributes, materials and the base-colour texture, as does `surface`, which draws
+/// everything when it is given.
+struct ScenePass {
+    const gpu::Pipeline* opaque = nullptr;
+    const gpu::Pipeline* masked = nullptr;
+    const gpu::Pipeline* surface = nullptr;
+    bool hide_backs = false;  ///< of single-sided materials
+};
+
+/// Draws all instances within begin_drawing() / end_drawing().
+void draw_scene(gpu::Commands& commands, const GpuScene& scene, const ScenePass& pass,
+                const Mat4& clip_from_world, bool ignore_alpha);
+
+/// What draw_scene() needs of the pipelines that it is given.
+gpu::PipelineLayoutInfo opaque_layout();
+gpu::PipelineLayoutInfo material_layout();
+/// Location 0: position, 3 floats.
+void set_position_input(gpu::GraphicsPipelineInfo& info);
+
+}  // namespace gnomon::raster

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <gnomon/scene.h>
+
+#include "gpu/commands.h"
+#include "raster/gpu_scene.h"
+
+namespace gnomon::raster {
+
+/// In `Receivers::ids`: nothing is seen at this pixel.
+inline constexpr std::uint32_t kNoReceiver = 0xffffffffu;
+
+/// What the camera sees, in device memory.
+struct Receivers {
+    Extent size;
+    Camera camera;
+    gpu::Image depth;    ///< D32S8, reversed Z, 0 = nothing; the stencil is for anyone to use
+    gpu::Image ids;      ///< RG32UI: index into Scene::instances(), triangle of its mesh
+    gpu::Image normals;  ///< R32UI: geometric normal towards the viewer, octahedral
+
+    /// From pixel (x, y, depth) in NDC to the world, of the camera that was drawn.
+    Mat4 world_from_clip() const;
+};
+
+/// What the camera sees looks like; for lighting.
+struct Surfaces {
+    gpu::Image albedo;        ///< RGBA8 sRGB: base colour; alpha = specular reflectance
+    gpu::Image normal_gloss;  ///< RGBA16F: shading normal in the world, or zero; shininess
+};
+
+/// Draws receivers: their depth, ids and normals.
+class ReceiverPass {
+public:
+    explicit ReceiverPass(const gpu::Device& device);
+
+    /// Allocates `out` when its size is another one.
+    void record(gpu::Commands& commands, const GpuScene& scene, const Camera& camera, Extent size,
+                bool ignore_alpha, Receivers& out);
+
+private:
+    const gpu::Device& device_;
+    gpu::Pipeline opaque_, masked_, normal_;
+};
+
+/// Draws the looks of the surfaces that a ReceiverPass found.
+class SurfacePass {
+public:
+    explicit SurfacePass(const gpu::Device& device);
+
+    void record(gpu::Commands& commands, const GpuScene& scene, Receivers& receivers,
+                Surfaces& out);
+
+private:
+    const gpu::Device& device_;
+    gpu::Pipeline surface_;
+};
+
+}  // namespace gnomon::raster

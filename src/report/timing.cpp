@@ -1,0 +1,140 @@
+#include "report/timing.h"
+
+#include "base/parallel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+namespace gnomon::report {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double pass_ms(const RenderStats& stats, std::string_view name) {
+    double ms = 0.0;
+    for (const PassTime& pass : stats.passes) {
+        if (pass.name == name) ms += pass.ms;
+    }
+    return ms;
+}
+
+std::vector<std::string> pass_names(std::span<const RenderStats> stats) {
+    std::vector<std::string> names;
+    for (const RenderStats& render : stats) {
+        for (const PassTime& pass : render.passes) {
+            if (std::find(names.begin(), names.end(), pass.name) == names.end()) {
+                names.push_back(pass.name);
+            }
+        }
+    }
+    return names;
+}
+
+/// spread() of what `get` reads from each render.
+template <typename Get>
+Spread spread_of(std::span<const RenderStats> stats, Get get) {
+    std::vector<double> values;
+    for (const RenderStats& render : stats)
+        values.push_back(get(render));
+    return spread(std::move(values));
+}
+
+}  // namespace
+
+Spread spread(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const std::size_t upper = values.size() / 2;
+    const std::size_t lower = (values.size() - 1) / 2;
+    return {0.5 * (values[lower] + values[upper]), values.front(), values.back()};
+}
+
+Timing summarize(std::vector<double> total_ms, std::span<const RenderStats> stats) {
+    Timing timing;
+    timing.total_ms = spread(std::move(total_ms));
+    timing.cpu_ms = spread_of(stats, [](const RenderStats& render) { return render.cpu_ms; });
+    timing.gpu_ms = spread_of(stats, [](const RenderStats& render) { return render.gpu_ms; });
+    for (const std::string& name : pass_names(stats)) {
+        timing.passes.emplace_back(name, spread_of(stats, [&](const RenderStats& render) {
+                                       return pass_ms(render, name);
+                                   }));
+    }
+    for (const RenderStats& render : stats) {
+        timing.memory_bytes = std::max(timing.memory_bytes, render.memory_bytes);
+    }
+    return timing;
+}
+
+Timing time_renders(Technique& technique, const Frame& frame, int untimed, int timed,
+                    std::string_view task, Progress& progress, Visibility& out) {
+    std::vector<double> total_ms;
+    std::vector<RenderStats> stats;
+    for (int i = 0; i < untimed + timed; ++i) {
+        throw_if_cancelled(progress, task);
+        progress.report(task, static_cast<double>(i) / (untimed + timed));
+        const Clock::time_point start = Clock::now();
+        technique.render(frame, out);
+        if (i < untimed) continue;
+        total_ms.push_back(ms_since(start));
+        stats.push_back(technique.last_render());
+    }
+    progress.report(task, 1.0);
+    return summarize(std::move(total_ms), stats);
+}
+
+double time_prepare(Technique& technique, const Scene& scene, Progress& progress) {
+    const Clock::time_point start = Clock::now();
+    technique.prepare(scene, progress);
+    return ms_since(start);
+}
+
+std::vector<TechniqueChoice> chosen_techniques(const CompareOptions& options) {
+    std::vector<TechniqueChoice> chosen = options.techniques;
+    if (chosen.empty()) {
+        for (const TechniqueInfo& info : techniques())
+            chosen.push_back({std::string(info.name), {}});
+    }
+    for (const TechniqueChoice& choice : chosen) {
+        const TechniqueInfo& info = find_technique(choice.name);
+        for (const auto& [name, value] : choice.params.values()) {
+            find_param(info.name, info.params(), name);
+        }
+    }
+    return chosen;
+}
+
+std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info, const Params& chosen) {
+    std::map<std::string, ParamValue> all;
+    for (const ParamInfo& param : info.params())
+        all[param.name] = param.default_value;
+    for (const auto& [name, value] : chosen.values()) {
+        all[find_param(info.name, info.params(), name).name] = value;
+    }
+    return all;
+}
+
+std::string unsupported_note(const TechniqueInfo& info, const Light& light) {
+    if (supports(info.lights, light)) return {};
+    constexpr std::array<std::pair<LightKinds, std::string_view>, 4> kKinds = {
+        {{LightKinds::directional, "directional"},
+         {LightKinds::point, "point"},
+         {LightKinds::spot, "spot"},
+         {LightKinds::area, "area"}}};
+    std::string able;
+    for (const auto& [kind, name] : kKinds) {
+        if ((static_cast<unsigned>(info.lights) & static_cast<unsigned>(kind)) == 0) continue;
+        able += fmt::format("{}{}", able.empty() ? "" : ", ", name);
+    }
+    return fmt::format("no shadows of {} lights (it shadows: {})", light_kind(light),
+                       able.empty() ? "none" : able);
+}
+
+}  // namespace gnomon::report

@@ -1,0 +1,3 @@
+// The parser's own code, once in the program.
+#define TINYOBJLOADER_IMPLEMENTATION
+#include "scene/obj_parser.h"

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <gnomon/light.h>
+
+#include "raster/receivers.h"
+#include "visibility/light_shape.shared.h"
+
+namespace gnomon {
+
+/// The light as shaders see it.
+shared::LightShape light_shape(const Light& light);
+
+/// For visibility/receiver.glsl.
+shared::ReceiverPush receiver_push(const raster::Receivers& receivers, const Light& light);
+
+}  // namespace gnomon

@@ -1,0 +1,41 @@
+// The receiver of a pixel, and whether it faces the light. Includers declare the push constants and
+// bind depth and normals.
+
+#ifndef GNOMON_VISIBILITY_RECEIVER_GLSL
+#define GNOMON_VISIBILITY_RECEIVER_GLSL
+
+#include "raster/octahedral.glsl"
+#include "visibility/light_shape.shared.h"
+
+vec3 receiver_position(mat4 world_from_clip, uvec2 pixel, uvec2 size, float depth) {
+    vec2 ndc = 2.0 * (vec2(pixel) + 0.5) / vec2(size) - 1.0;
+    vec4 p = world_from_clip * vec4(ndc, depth, 1.0);
+    return p.xyz / p.w;
+}
+
+// Not normalised for lights at a finite distance.
+vec3 to_light_ws(LightShape light, vec3 p_ws) {
+    return light.kind == kLightDirectional ? light.position : light.position - p_ws;
+}
+
+// Does any part of the light lie above the receiver's plane, on the side to which it shines?
+bool faces_light(LightShape light, vec3 p_ws, vec3 normal_ws) {
+    vec3 to_center = to_light_ws(light, p_ws);
+    float height = dot(normal_ws, to_center);
+    switch (light.kind) {
+        case kLightDirectional:
+        case kLightSphere:
+            height += light.radius;
+            break;
+        case kLightDisc:
+            height += light.radius * length(cross(normal_ws, light.normal));
+            break;
+        case kLightRect:
+            height += abs(dot(normal_ws, light.half_u)) + abs(dot(normal_ws, light.half_v));
+            break;
+    }
+    bool shines_here = light.kind < kLightDisc || dot(light.normal, to_center) < 0.0;
+    return height > 0.0 && shines_here;
+}
+
+#endif

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "visibility/context_impl.h"
+
+#include <functional>
+#include <memory>
+
+namespace gnomon {
+
+/// Side in metres of a technique's texel at a point of the world.
+using TexelSize = std::function<float(Vec3 p_ws)>;
+
+/// An image of one float a pixel that is on the device, on the host, or both. Must not outlive the
+/// Context that it was rendered with.
+class Visibility::Impl {
+public:
+    Extent size() const { return size_; }
+
+    /// An R32F storage image of that size for a technique to write; what was held is void.
+    gpu::Image& device_target(Context::Impl& context, Extent size);
+    /// A 1-channel image of that size for a technique to write; what was held is void.
+    Image& host_target(Context::Impl& context, Extent size);
+
+    const Image& on_host();
+    gpu::Image& on_device();
+
+    /// Tells the texels of what was rendered for `frame`.
+    void set_texels(TexelSize texel_size, float filter_radius_texels, const Frame& frame);
+    /// Made from the receivers at the first call.
+    const Image& texel_size_m();
+    float filter_radius_texels() const { return filter_radius_texels_; }
+
+private:
+    void reset(Context::Impl& context, Extent size);
+    void allocate_on_device();
+
+    Context::Impl* context_ = nullptr;
+    Extent size_;
+    bool host_valid_ = false, device_valid_ = false;
+    Image host_;
+    gpu::Image device_;
+    TexelSize texel_size_;
+    float filter_radius_texels_ = 0.0f;
+    std::optional<Frame> frame_;
+    Image texel_image_;
+};
+
+}  // namespace gnomon

@@ -1,0 +1,229 @@
+// Shadow volumes, counted by depth fail in the stencil buffer.
+// F. Crow, "Shadow Algorithms for Computer Graphics", SIGGRAPH 1977; T. Heidmann, "Real Shadows
+// Real Time", 1991; W. Bilodeau and M. Songy, 1999, and J. Carmack, 2000, for depth fail; C.
+// Everitt and M. Kilgard, "Practical and Robust Stenciled Shadow Volumes", 2002, for volumes
+// without end; M. McGuire, "Efficient Shadow Volume Rendering", GPU Gems 2004, chapter 9.
+// Departures: meshes of any kind, by counting how often and which way each edge is used (P.
+// Bergeron, "A General Version of Crow's Shadow Volumes", CG&A 1986; B. Kim et al., "Shadow Volumes
+// for Non-Manifold Meshes", 2008).
+
+#include "adjacency.h"
+#include "base/parallel.h"
+#include "resolve.comp.spv.h"
+#include "technique/param_table.h"
+#include "technique/technique_base.h"
+#include "visibility/light_shape.h"
+#include "volume.h"
+#include "volume.vert.spv.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+namespace gnomon {
+
+const TechniqueInfo& shadow_volumes_info();
+
+namespace {
+
+using namespace shadow_volumes;
+using shadow_volumes::shared::VolumePush;
+using shadow_volumes::shared::VolumeSide;
+using shadow_volumes::shared::VolumeTriangle;
+
+constexpr unsigned kGroupSize = 8;
+
+struct Options {};
+
+const ParamTable<Options>& param_table() {
+    static const ParamTable<Options> table("shadow_volumes", {});
+    return table;
+}
+
+HomogeneousLight homogeneous(const Light& light) {
+    if (const auto* sun = std::get_if<DirectionalLight>(&light)) return {sun->to_light_ws, 0.0f};
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return {spot->position_ws, 1.0f};
+    return {std::get<PointLight>(light).position_ws, 1.0f};
+}
+
+/// A buffer that the host fills each frame; it grows and never shrinks.
+template <typename Record>
+class RecordBuffer {
+public:
+    void fill(const gpu::Device& device, const std::vector<std::vector<Record>>& parts) {
+        count_ = 0;
+        for (const std::vector<Record>& part : parts)
+            count_ += part.size();
+        const std::uint64_t bytes = count_ * sizeof(Record);
+        if (!buffer_ || bytes > buffer_.size_bytes()) {
+            buffer_ = gpu::Buffer(device, bytes + bytes / 2, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                  gpu::Placement::upload);
+        }
+        std::byte* target = buffer_.mapped();
+        for (const std::vector<Record>& part : parts) {
+            if (part.empty()) continue;
+            std::memcpy(target, part.data(), part.size() * sizeof(Record));
+            target += part.size() * sizeof(Record);
+        }
+    }
+
+    std::uint32_t count() const { return static_cast<std::uint32_t>(count_); }
+    const gpu::Buffer& buffer() const { return buffer_; }
+
+private:
+    gpu::Buffer buffer_;
+    std::size_t count_ = 0;
+};
+
+gpu::Pipeline volume_pipeline(const gpu::Device& device, bool depth_clamp) {
+    using enum gpu::BindingType;
+    gpu::GraphicsPipelineInfo info;
+    info.vertex = shaders::volume_vert;
+    info.layout = {{storage_buffer, storage_buffer, storage_buffer, storage_buffer},
+                   sizeof(VolumePush)};
+    info.depth_format = VK_FORMAT_D32_SFLOAT_S8_UINT;
+    info.depth_write = false;
+    info.depth_clamp = depth_clamp;
+    info.stencil_count_depth_fail = true;
+    return gpu::Pipeline(device, info);
+}
+
+class ShadowVolumes final : public GpuTechnique {
+public:
+    explicit ShadowVolumes(Context& context) : GpuTechnique(context, shadow_volumes_info()) {
+        const gpu::Device& device = context.impl().device();
+        using enum gpu::BindingType;
+        volume_ = volume_pipeline(device, false);
+        volume_clamped_ = volume_pipeline(device, true);
+        resolve_ =
+            gpu::Pipeline(device, {.code = shaders::resolve_comp,
+                                   .layout = {{texture, storage_image, storage_image, texture},
+                                              sizeof(gnomon::shared::ReceiverPush)}});
+        nearest_ = gpu::Sampler(device, {});
+    }
+
+private:
+    void prepare_scene(const Scene& scene, Progress& progress) override {
+        GpuTechnique::prepare_scene(scene, progress);
+        adjacencies_.assign(scene.meshes().size(), {});
+        parallel_for(
+            adjacencies_.size(), 1,
+            [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i) {
+                    adjacencies_[i] = find_adjacency(scene.meshes()[i]);
+                }
+            },
+            "finding edges", &progress);
+        sources_.assign(scene.instances().size(), {});
+        const raster::GpuScene& gpu_scene = context().gpu_scene(scene);
+        for (const raster::Draw& draw : gpu_scene.draws()) {
+            for (std::uint32_t i = 0; i < draw.slot_count; ++i) {
+                const std::uint32_t slot = draw.first_slot + i;
+                sources_[gpu_scene.instance_at(slot)] = {slot, draw.first_vertex};
+            }
+        }
+    }
+
+    void build_volumes(const Scene& scene, HomogeneousLight light_ws) {
+        const std::size_t count = scene.instances().size();
+        std::vector<std::vector<VolumeTriangle>> caps(count);
+        std::vector<std::vector<VolumeSide>> sides(count);
+        parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const Instance& instance = scene.instances()[i];
+                Volume volume =
+                    build_volume(scene.meshes()[instance.mesh], adjacencies_[instance.mesh],
+                                 instance.world_from_local, light_ws, sources_[i]);
+                caps[i] = std::move(volume.caps);
+                sides[i] = std::move(volume.sides);
+            }
+        });
+        caps_.fill(context().device(), caps);
+        sides_.fill(context().device(), sides);
+    }
+
+    void draw_part(gpu::Commands& commands, const gpu::Pipeline& pipeline, VolumePush push,
+                   std::uint32_t part, std::uint32_t vertices) {
+        if (vertices == 0) return;
+        push.part = part;
+        commands.push(pipeline, push);
+        vkCmdDraw(commands.handle(), vertices, 1, 0, 0);
+    }
+
+    void draw_volumes(gpu::Commands& commands, const RecordInput& input,
+                      HomogeneousLight light_ws) {
+        const gpu::Pass pass(commands, "volumes");
+        gpu::Image& depth = input.receivers.depth;
+        // A parallel camera has a far plane, beyond which volumes must go on.
+        const bool parallel = input.frame.camera.ortho_height_m > 0.0f;
+        const gpu::Pipeline& pipeline = parallel ? volume_clamped_ : volume_;
+        const VolumePush push{
+            .clip_from_world = input.frame.camera.clip_from_world(input.frame.size),
+            .light_ws = light_ws};
+        const bool at_infinity = light_ws.w == 0.0f;
+        commands.use(depth, gpu::Use::depth_test);
+        commands.begin_drawing({.depth = &depth,
+                                .size = input.frame.size,
+                                .clear_depth = false,
+                                .clear_stencil = true});
+        commands.bind(pipeline,
+                      {gpu::StorageBuffer{&input.scene.instances()},
+                       gpu::StorageBuffer{&input.scene.positions()},
+                       gpu::StorageBuffer{&caps_.buffer()}, gpu::StorageBuffer{&sides_.buffer()}});
+        draw_part(commands, pipeline, push, shadow_volumes::shared::kNearCaps, 3 * caps_.count());
+        if (!at_infinity) {
+            draw_part(commands, pipeline, push, shadow_volumes::shared::kFarCaps,
+                      3 * caps_.count());
+        }
+        draw_part(commands, pipeline, push, shadow_volumes::shared::kSides,
+                  (at_infinity ? 3u : 6u) * sides_.count());
+        commands.end_drawing();
+        commands.use(depth, gpu::Use::sampled);
+    }
+
+    void record(gpu::Commands& commands, const RecordInput& input,
+                gpu::Image& visibility) override {
+        const HomogeneousLight light_ws = homogeneous(input.frame.light);
+        build_volumes(input.frame.scene, light_ws);
+        draw_volumes(commands, input, light_ws);
+        const gpu::Pass pass(commands, "resolve");
+        commands.use(visibility, gpu::Use::storage_write);
+        commands.bind(resolve_, {gpu::Texture{input.receivers.depth.view(), &nearest_},
+                                 gpu::StorageImage{input.receivers.normals.view()},
+                                 gpu::StorageImage{visibility.view()},
+                                 gpu::Texture{input.receivers.depth.stencil_view(), &nearest_}});
+        commands.push(resolve_, receiver_push(input.receivers, input.frame.light));
+        commands.dispatch(input.frame.size, kGroupSize);
+    }
+
+    std::uint64_t memory_bytes() const override {
+        return caps_.buffer().memory_bytes() + sides_.buffer().memory_bytes();
+    }
+
+    gpu::Pipeline volume_, volume_clamped_, resolve_;
+    gpu::Sampler nearest_;
+    std::vector<Adjacency> adjacencies_;  // of each mesh
+    std::vector<VolumeSource> sources_;   // of each instance
+    RecordBuffer<VolumeTriangle> caps_;
+    RecordBuffer<VolumeSide> sides_;
+};
+
+}  // namespace
+
+const TechniqueInfo& shadow_volumes_info() {
+    static const TechniqueInfo info{
+        .name = "shadow_volumes",
+        .title = "Shadow volumes",
+        .source = "crow1977, heidmann1991, everitt2002, mcguire2004, bergeron1986, kim2008",
+        .lights = LightKinds::directional | LightKinds::point | LightKinds::spot,
+        .penumbra = Penumbra::none,
+        .honors_alpha = false,
+        .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
+        .make = [](Context& context, const Params& params) -> std::unique_ptr<Technique> {
+            param_table().options(params);
+            return std::make_unique<ShadowVolumes>(context);
+        }};
+    return info;
+}
+
+}  // namespace gnomon
