@@ -24,7 +24,8 @@ vec3 biased_position(vec3 p_ws, vec3 normal_ws) {
     vec3 to_light = normalize(to_light_ws(push.light, p_ws));
     float along_axis = max(dot(p_ws - frame.eye_ws, frame.axis_ws), 0.0);
     float texel_m = frame.texel_m * mix(1.0, along_axis, frame.perspective);
-    float cosine = dot(normal_ws, to_light);
+    // Depths are compared along the map's axis: from there a plane's slope counts, in perspective too.
+    float cosine = dot(normal_ws, mix(to_light, -frame.axis_ws, frame.perspective));
     float sine = sqrt(max(0.0, 1.0 - cosine * cosine));
     float slope = cosine > 0.0 ? min(sine / cosine, kMaxSlope) : kMaxSlope;
     float reach_m = frame.reach_texels * texel_m;

@@ -33,10 +33,15 @@ using shadow_volumes::shared::VolumeTriangle;
 
 constexpr unsigned kGroupSize = 8;
 
-struct Options {};
+struct Options {
+    bool mend_edges = true;
+};
 
 const ParamTable<Options>& param_table() {
-    static const ParamTable<Options> table("shadow_volumes", {});
+    static const ParamTable<Options> table(
+        "shadow_volumes", {boolean("mend_edges", &Options::mend_edges,
+                                   "pixels that hang over the edge of their surface take its "
+                                   "neighbouring pixels' state")});
     return table;
 }
 
@@ -90,15 +95,22 @@ gpu::Pipeline volume_pipeline(const gpu::Device& device, bool depth_clamp) {
 
 class ShadowVolumes final : public GpuTechnique {
 public:
-    explicit ShadowVolumes(Context& context) : GpuTechnique(context, shadow_volumes_info()) {
+    ShadowVolumes(Context& context, const Options& options)
+        : GpuTechnique(context, shadow_volumes_info()), options_(options) {
         const gpu::Device& device = context.impl().device();
         using enum gpu::BindingType;
         volume_ = volume_pipeline(device, false);
         volume_clamped_ = volume_pipeline(device, true);
         resolve_ =
             gpu::Pipeline(device, {.code = shaders::resolve_comp,
-                                   .layout = {{texture, storage_image, storage_image, texture},
-                                              sizeof(gnomon::shared::ReceiverPush)}});
+                                   .layout = {{texture, storage_image, storage_image, texture,
+                                               storage_image, storage_buffer, storage_buffer,
+                                               storage_buffer, storage_buffer, storage_buffer},
+                                              sizeof(gnomon::shared::ReceiverPush)},
+                                   .constants = {options.mend_edges ? 1u : 0u}});
+        view_ = gpu::Buffer(device, sizeof(Mat4),
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                            gpu::Placement::device);
         nearest_ = gpu::Sampler(device, {});
     }
 
@@ -161,11 +173,10 @@ private:
             .clip_from_world = input.frame.camera.clip_from_world(input.frame.size),
             .light_ws = light_ws};
         const bool at_infinity = light_ws.w == 0.0f;
+        gpu::Targets targets{
+            .depth = &depth, .size = input.frame.size, .clear_depth = false, .clear_stencil = true};
         commands.use(depth, gpu::Use::depth_test);
-        commands.begin_drawing({.depth = &depth,
-                                .size = input.frame.size,
-                                .clear_depth = false,
-                                .clear_stencil = true});
+        commands.begin_drawing(targets);
         commands.bind(pipeline,
                       {gpu::StorageBuffer{&input.scene.instances()},
                        gpu::StorageBuffer{&input.scene.positions()},
@@ -187,11 +198,18 @@ private:
         build_volumes(input.frame.scene, light_ws);
         draw_volumes(commands, input, light_ws);
         const gpu::Pass pass(commands, "resolve");
+        commands.update(view_, input.frame.camera.clip_from_world(input.frame.size));
         commands.use(visibility, gpu::Use::storage_write);
-        commands.bind(resolve_, {gpu::Texture{input.receivers.depth.view(), &nearest_},
-                                 gpu::StorageImage{input.receivers.normals.view()},
-                                 gpu::StorageImage{visibility.view()},
-                                 gpu::Texture{input.receivers.depth.stencil_view(), &nearest_}});
+        commands.bind(
+            resolve_,
+            {gpu::Texture{input.receivers.depth.view(), &nearest_},
+             gpu::StorageImage{input.receivers.normals.view()},
+             gpu::StorageImage{visibility.view()},
+             gpu::Texture{input.receivers.depth.stencil_view(), &nearest_},
+             gpu::StorageImage{input.receivers.ids.view()},
+             gpu::StorageBuffer{&input.scene.instances()}, gpu::StorageBuffer{&input.scene.slots()},
+             gpu::StorageBuffer{&input.scene.positions()},
+             gpu::StorageBuffer{&input.scene.indices()}, gpu::StorageBuffer{&view_}});
         commands.push(resolve_, receiver_push(input.receivers, input.frame.light));
         commands.dispatch(input.frame.size, kGroupSize);
     }
@@ -200,8 +218,10 @@ private:
         return caps_.buffer().memory_bytes() + sides_.buffer().memory_bytes();
     }
 
+    Options options_;
     gpu::Pipeline volume_, volume_clamped_, resolve_;
     gpu::Sampler nearest_;
+    gpu::Buffer view_;                    // clip_from_world of the camera
     std::vector<Adjacency> adjacencies_;  // of each mesh
     std::vector<VolumeSource> sources_;   // of each instance
     RecordBuffer<VolumeTriangle> caps_;
@@ -220,8 +240,7 @@ const TechniqueInfo& shadow_volumes_info() {
         .honors_alpha = false,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
         .make = [](Context& context, const Params& params) -> std::unique_ptr<Technique> {
-            param_table().options(params);
-            return std::make_unique<ShadowVolumes>(context);
+            return std::make_unique<ShadowVolumes>(context, param_table().options(params));
         }};
     return info;
 }
