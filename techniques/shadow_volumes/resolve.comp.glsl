@@ -28,10 +28,8 @@ layout(set = 0, binding = 8, scalar) readonly buffer Indices { uint indices[]; }
 layout(set = 0, binding = 9, scalar) readonly buffer View { mat4 clip_from_world; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
-// Two receivers are on one surface when their normals differ by less than 0.1 rad and the line between
-// them rises over it by less than this.
-const float kMaxRise = 0.05;
-const float kMinNormalCosine = 0.995;
+// Neighbouring pixels of one instance show one surface when their normals differ by less than 30°.
+const float kMinNormalCosine = 0.866;
 
 bool enclosed(ivec2 at) { return texelFetch(volumes, at, 0).x != 0u; }
 
@@ -54,20 +52,24 @@ bool hangs_over(ivec2 at) {
     return any(lessThan(sides * area, vec3(0.0)));
 }
 
-// The state of most neighbours on the same surface, or the pixel's own when there are none.
-bool mended(ivec2 at, vec3 p_ws, vec3 normal_ws) {
+// The state of most neighbours on the same surface that face the light too, or the pixel's own when
+// there are none.
+bool mended(ivec2 at, vec3 normal_ws) {
+    uint instance = imageLoad(ids, at).x;
     int votes = 0;
     for (int i = 0; i < 9; ++i) {
         ivec2 other = at + ivec2(i % 3, i / 3) - 1;
         bool outside = any(lessThan(other, ivec2(0))) ||
                        any(greaterThanEqual(other, ivec2(push.size)));
-        if (i == 4 || outside) continue;
-        float depth = texelFetch(depths, other, 0).x;
-        vec3 offset = receiver_position(push.world_from_clip, uvec2(other), push.size, depth) - p_ws;
+        if (i == 4 || outside || imageLoad(ids, other).x != instance) continue;
         vec3 other_normal = unpack_unit_vector(imageLoad(normals, other).x);
-        bool same = depth > 0.0 && dot(normal_ws, other_normal) > kMinNormalCosine &&
-                    abs(dot(normal_ws, offset)) < kMaxRise * length(offset);
-        if (same) votes += enclosed(other) ? 1 : -1;
+        vec3 other_ws = receiver_position(push.world_from_clip, uvec2(other), push.size,
+                                          texelFetch(depths, other, 0).x);
+        if (dot(normal_ws, other_normal) < kMinNormalCosine ||
+            !faces_light(push.light, other_ws, other_normal)) {
+            continue;
+        }
+        votes += enclosed(other) ? 1 : -1;
     }
     return votes == 0 ? enclosed(at) : votes > 0;
 }
@@ -82,7 +84,7 @@ void main() {
         vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, depth);
         vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
         bool mend = kMendEdges != 0u && hangs_over(at);
-        bool in_shadow = mend ? mended(at, p_ws, normal_ws) : enclosed(at);
+        bool in_shadow = mend ? mended(at, normal_ws) : enclosed(at);
         lit = faces_light(push.light, p_ws, normal_ws) && !in_shadow ? 1.0 : 0.0;
     }
     imageStore(visibility, at, vec4(lit));
