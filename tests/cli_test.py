@@ -237,7 +237,7 @@ class Output(CliTest):
 
     def test_folder_with_other_things_is_not_replaced(self):
         (self.folder / "thesis.txt").write_text("years of work")
-        self.assert_fails(INPUT, ["-o", "report"], "compare", "cube", "-o", self.folder)
+        self.assert_fails(INPUT, ["report"], "compare", "cube", "-o", self.folder)
         (self.folder / "file").touch()
         self.assert_fails(INPUT, ["-o", "file"], "compare", "cube", "-o", self.folder / "file")
         self.assertEqual(self.files(), ["file", "thesis.txt"])

@@ -310,11 +310,13 @@ ContextOptions context_options(const Session& session) {
 void check_validation(const Context& context) {
     const std::vector<std::string> messages = context.validation_messages();
     if (messages.empty()) return;
-    for (const std::string& message : messages)
-        print_warning(message);
+    constexpr std::size_t kMaxShown = 10;  // one fault is reported at each draw
+    const std::size_t shown = std::min(messages.size(), kMaxShown);
+    for (std::size_t i = 0; i < shown; ++i)
+        print_warning(messages[i]);
     throw Error(ErrorKind::machine,
-                fmt::format("the validation layer reported {} faults, see the warnings above",
-                            messages.size()));
+                fmt::format("the validation layer reported {} faults; the first {} are above",
+                            messages.size(), shown));
 }
 
 }  // namespace gnomon::cli

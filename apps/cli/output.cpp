@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <gnomon/error.h>
+#include <gnomon/report.h>
 
 #include "fail.h"
 
@@ -78,21 +79,7 @@ void require_output_file(std::string_view flag, const fs::path& path, std::strin
 void require_output_folder(std::string_view flag, const fs::path& path) {
     // "out/" names the same folder as "out", but has no file name.
     const fs::path folder = path.has_filename() ? path : path.parent_path();
-    std::error_code error;
-    if (fs::exists(folder, error)) {
-        if (!fs::is_directory(folder, error)) {
-            fail_usage("{} {}: is a file; give a folder", flag, path.string());
-        }
-        if (fs::equivalent(folder, fs::current_path(error), error)) {
-            fail_usage("{} {}: is the current folder; give one in it, which can be replaced", flag,
-                       path.string());
-        }
-        const bool empty = fs::is_empty(folder, error);
-        if (!empty && !fs::exists(folder / "results.json", error)) {
-            fail_usage("{} {}: holds something else than a report; give another folder", flag,
-                       path.string());
-        }
-    }
+    check_report_folder(folder);
     require_folder_of(flag, folder);
 }
 

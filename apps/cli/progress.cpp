@@ -34,14 +34,17 @@ static_assert(std::atomic<int>::is_always_lock_free);
 
 void on_stop_signal(int number) {
     g_stop_signal.store(number);
+    std::signal(SIGINT, SIG_DFL);  // the next one of either kind ends the process
+    std::signal(SIGTERM, SIG_DFL);
 }
 
 void handle_stop_signal(int number) {
     struct sigaction action {};
+    // Who starts us with a signal ignored (a shell's background job) wants it ignored.
     if (sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) return;
     action.sa_handler = on_stop_signal;
     sigemptyset(&action.sa_mask);
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second one kills
+    action.sa_flags = SA_RESTART;
     sigaction(number, &action, nullptr);
 }
 

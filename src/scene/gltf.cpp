@@ -47,12 +47,18 @@ std::vector<glm::dmat4> read_gpu_instances(GltfDocument& document,
     std::vector<glm::dmat4> transforms(count);
     for (std::size_t i = 0; i < count; ++i) {
         NodeTransform transform;
-        const float* t = translations.data() + i * 3;
-        const float* r = rotations.data() + i * 4;
-        const float* s = scales.data() + i * 3;
-        if (!translations.empty()) transform.translation = {t[0], t[1], t[2]};
-        if (!rotations.empty()) transform.rotation = glm::dquat(r[3], r[0], r[1], r[2]);
-        if (!scales.empty()) transform.scale = {s[0], s[1], s[2]};
+        if (!translations.empty()) {
+            const float* t = &translations[i * 3];
+            transform.translation = {t[0], t[1], t[2]};
+        }
+        if (!rotations.empty()) {
+            const float* r = &rotations[i * 4];  // x, y, z, w
+            transform.rotation = glm::dquat(r[3], r[0], r[1], r[2]);
+        }
+        if (!scales.empty()) {
+            const float* s = &scales[i * 3];
+            transform.scale = {s[0], s[1], s[2]};
+        }
         transforms[i] = transform.parent_from_node();
     }
     return transforms;

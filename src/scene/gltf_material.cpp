@@ -53,8 +53,12 @@ BaseColor specular_glossiness_color(const tinygltf::Value& extension) {
     return color;
 }
 
-void set_texture_transform(const tinygltf::Value& transform, Material& material,
-                           int& texcoord_set) {
+bool finite(Vec2 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y);
+}
+
+void set_texture_transform(const tinygltf::Value& transform, Material& material, int& texcoord_set,
+                           Warnings& warnings) {
     const auto vector = [&](const std::string& name, float otherwise) {
         if (!transform.Has(name)) return Vec2(otherwise);
         const tinygltf::Value& value = transform.Get(name);
@@ -67,8 +71,14 @@ void set_texture_transform(const tinygltf::Value& transform, Material& material,
     const Vec2 scale = vector("scale", 1.0f);
     // Counter-clockwise as seen with V pointing down; the listing in the extension's text turns the
     // other way, which is a known slip of it (KhronosGroup/glTF, issue 1563).
-    material.uv_scale_rotation = glm::mat2(scale.x * Vec2(c, -s), scale.y * Vec2(s, c));
-    material.uv_offset = vector("offset", 0.0f);
+    const glm::mat2 scale_rotation(scale.x * Vec2(c, -s), scale.y * Vec2(s, c));
+    const Vec2 offset = vector("offset", 0.0f);
+    if (finite(scale_rotation[0]) && finite(scale_rotation[1]) && finite(offset)) {
+        material.uv_scale_rotation = scale_rotation;
+        material.uv_offset = offset;
+    } else {
+        warnings.add("a texture transform that is not finite is left out", material.name);
+    }
     texcoord_set = static_cast<int>(number_in(transform, "texCoord", texcoord_set));
 }
 
@@ -105,7 +115,8 @@ int read_texture(GltfDocument& document, int index, TextureShelf& shelf, Warning
 
 float alpha_cutoff_of(const tinygltf::Material& material, Warnings& warnings) {
     if (material.alphaMode == "MASK") {
-        return std::max(0.0f, static_cast<float>(material.alphaCutoff));
+        constexpr double kEverything = 2.0;  // all cutoffs above 1 leave nothing
+        return static_cast<float>(std::clamp(material.alphaCutoff, 0.0, kEverything));
     }
     if (material.alphaMode == "BLEND") return kBlendCutoff;
     if (material.alphaMode != "OPAQUE") {
@@ -147,7 +158,7 @@ Material convert(GltfDocument& document, const tinygltf::Material& source, Textu
     if (color.texture >= 0) {
         material.base_color_texture = read_texture(document, color.texture, shelf, warnings);
         if (color.transform != nullptr) {
-            set_texture_transform(*color.transform, material, texcoord_set);
+            set_texture_transform(*color.transform, material, texcoord_set, warnings);
         }
     }
     material.alpha_cutoff = alpha_cutoff_of(source, warnings);

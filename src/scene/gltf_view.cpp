@@ -52,6 +52,17 @@ Light convert_spot(const tinygltf::Light& source, Vec3 direction_ws, Vec3 intens
 
 // KHR_lights_punctual: a light shines along -Z of its node; lux for directional lights, else
 // candela.
+/// glTF's lights have no extent; write_glb() keeps ours in the extras. Others are suns.
+float angular_diameter_rad(const tinygltf::Light& source) {
+    constexpr const char* kKey = "angular_diameter_rad";
+    if (!source.extras.IsObject() || !source.extras.Has(kKey)) return kSunAngularDiameterRad;
+    const tinygltf::Value& value = source.extras.Get(kKey);
+    if (!value.IsNumber()) return kSunAngularDiameterRad;
+    const double diameter_rad = value.GetNumberAsDouble();
+    const bool valid = diameter_rad >= 0.0 && diameter_rad <= 0.5 * static_cast<double>(kPi);
+    return valid ? static_cast<float>(diameter_rad) : kSunAngularDiameterRad;
+}
+
 std::optional<Light> convert(const tinygltf::Light& source, const glm::dmat4& world_from_node,
                              Warnings& warnings) {
     const Vec3 to_light_ws(glm::normalize(DVec3(world_from_node[2])));
@@ -65,7 +76,7 @@ std::optional<Light> convert(const tinygltf::Light& source, const glm::dmat4& wo
     if (source.type == "directional") {
         return DirectionalLight{.to_light_ws = to_light_ws,
                                 .irradiance = strength,
-                                .angular_diameter_rad = kSunAngularDiameterRad,
+                                .angular_diameter_rad = angular_diameter_rad(source),
                                 .name = source.name};
     }
     if (source.type == "point") return PointLight{.intensity = strength, .name = source.name};

@@ -24,11 +24,13 @@ void Warnings::add(std::string_view fault, std::string_view where, std::uint64_t
         entry = entries_.end() - 1;
     }
     entry->amount += amount;
+    entry->counted = entry->counted || amount != 1 || where.empty();
     const std::string example = quotable(where);
     auto& examples = entry->examples;
-    if (std::find(examples.begin(), examples.end(), example) != examples.end()) return;
+    const bool known = std::find(examples.begin(), examples.end(), example) != examples.end();
+    if (example.empty() || known) return;
     ++entry->places;
-    if (!example.empty() && examples.size() < kMaxExamples) examples.push_back(example);
+    if (examples.size() < kMaxExamples) examples.push_back(example);
 }
 
 std::vector<std::string> Warnings::lines() const {
@@ -41,7 +43,7 @@ std::vector<std::string> Warnings::lines() const {
                 line += fmt::format(" and {} more", entry.places - entry.examples.size());
             }
         }
-        if (entry.amount > entry.places || (entry.examples.empty() && entry.amount > 1)) {
+        if (entry.counted && entry.amount > std::max<std::uint64_t>(entry.places, 1)) {
             line += fmt::format(" ({} in all)", entry.amount);
         }
         lines.push_back(std::move(line));

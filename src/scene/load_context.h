@@ -29,6 +29,7 @@ private:
         std::vector<std::string> examples;
         std::uint64_t places = 0;
         std::uint64_t amount = 0;
+        bool counted = false;  // the amount says more than the places
     };
     std::vector<Entry> entries_;
 };

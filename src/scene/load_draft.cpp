@@ -54,11 +54,11 @@ DBox3 transformed(const glm::dmat4& target_from_source, const DBox3& box) {
 
 // Floats minus whole metres near them: the subtraction is exact, so meshes that meet still meet.
 void recentre_mesh(DraftMesh& draft) {
-    const DVec3 offset_m = recentring_offset_m(mesh_bounds(draft)) - draft.origin_m;
-    if (draft.origin_m != DVec3(0.0) || offset_m == DVec3(0.0)) return;
+    if (draft.origin_m != DVec3(0.0)) return;
+    draft.origin_m = recentring_offset_m(mesh_bounds(draft));
+    if (draft.origin_m == DVec3(0.0)) return;
     for (Vec3& p : draft.mesh.positions)
-        p = Vec3(DVec3(p) - offset_m);
-    draft.origin_m = offset_m;
+        p = Vec3(DVec3(p) - draft.origin_m);
 }
 
 Box3 drawn_bounds(const SceneData& data) {

@@ -5,7 +5,6 @@
 #include "scene/obj_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -193,13 +192,11 @@ private:
 
     // u' = s u + o in the file's coordinates, whose v points up; ours points down: v' -> 1 - v'.
     static void set_texture_transform(const tinyobj::texture_option_t& option, Material& material) {
-        const std::array<double, 4> values = {option.scale[0], option.scale[1],
-                                              option.origin_offset[0], option.origin_offset[1]};
-        if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
-            return;
+        const Vec2 scale(option.scale[0], option.scale[1]);
+        const Vec2 offset(option.origin_offset[0], option.origin_offset[1]);
+        for (const float value : {scale.x, scale.y, offset.x, offset.y}) {
+            if (!std::isfinite(value)) return;
         }
-        const Vec2 scale(values[0], values[1]);
-        const Vec2 offset(values[2], values[3]);
         material.uv_scale_rotation = glm::mat2(scale.x, 0.0f, 0.0f, scale.y);
         material.uv_offset = {offset.x, 1.0f - scale.y - offset.y};
     }

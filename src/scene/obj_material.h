@@ -10,9 +10,9 @@
 
 namespace gnomon::scene {
 
-/// The materials of the libraries that `mtllib` lines name: the same name as before wins no second
-/// time. A line is one name, or several separated by blanks. Libraries and pictures that cannot be
-/// read are warnings.
+/// The materials of the libraries that `mtllib` lines name; of those with the same name, the first.
+/// A line is one name, or several separated by blanks. Libraries and pictures that cannot be read
+/// are warnings.
 std::vector<Material> read_libraries(const std::vector<std::string>& mtllib_lines,
                                      LoadContext& context, std::vector<Texture>& textures);
 
