@@ -92,7 +92,7 @@ TEST(SurfaceAlpha, AppliesTheMaterialsTextureTransform) {
 TEST(IsHole, NeverWithoutCutoff) {
     Material material;
     material.base_color.a = 0.0f;
-    const Scene scene = triangle_scene(material, {});
+    const Scene scene = triangle_scene(material, row({0}, TextureWrap::clamp));
     EXPECT_FALSE(is_hole(scene, scene.meshes()[0], 0, 0.2f, 0.2f));
 }
 

@@ -8,10 +8,10 @@
 
 #include "trace/caster.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
+#if __has_include(<embree3/rtcore.h>)  // first, as cmake/dependencies.cmake looks for it
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
 #endif
 
 #include "base/check.h"
@@ -23,7 +23,10 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -31,68 +34,85 @@ namespace gnomon::trace {
 
 namespace {
 
+/// Embree as GCC builds it hangs in its AVX-512 kernels when the stack holds the wrong garbage:
+/// masks are stored with 16 bits and read with 64 (RenderKit/embree pull request 574, found
+/// in 3.13.5 of Debian 12 and in releases up to 4.4.0).
+constexpr const char* kDeviceConfig = "max_isa=avx2";
+
 constexpr std::string_view kBuildTask = "building the ray tracer's tree";
 
-// What changed its name between Embree 3 and 4.
+// What differs between Embree 3 and 4. Streams are the fastest of Embree 3's calls for coherent
+// rays (bench/trace_bench.cpp); Embree 4 has none, so there it is packets of 8, or of 4 without
+// AVX.
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
-constexpr auto kCoherent = RTC_RAY_QUERY_FLAG_COHERENT;
+constexpr auto kBatchSupported = RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
 
-RTCOccludedArguments occluded_arguments(QueryContext& context) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.flags = kCoherent;
-    arguments.context = &context;
-    return arguments;
-}
 void init_context(QueryContext& context) {
     rtcInitRayQueryContext(&context);
 }
-void occluded(const int* valid, RTCScene scene, QueryContext& context, RTCRay4& rays) {
-    RTCOccludedArguments arguments = occluded_arguments(context);
-    rtcOccluded4(valid, scene, &rays, &arguments);
+
+template <unsigned N, typename Packet>
+void occluded_packets(RTCScene scene, RTCOccludedArguments& arguments, std::span<RTCRay> rays,
+                      void (*occluded)(const int*, RTCScene, Packet*, RTCOccludedArguments*)) {
+    for (std::size_t first = 0; first < rays.size(); first += N) {
+        const std::size_t count = std::min<std::size_t>(N, rays.size() - first);
+        alignas(Packet) int valid[N];
+        Packet packet;
+        for (unsigned lane = 0; lane < N; ++lane) {
+            valid[lane] = lane < count ? -1 : 0;
+            // A packet is the members of its rays in the order of RTCRay, each N times.
+            const RTCRay& ray = rays[first + std::min<std::size_t>(lane, count - 1)];
+            for (std::size_t member = 0; member < sizeof(RTCRay) / sizeof(float); ++member) {
+                std::memcpy(reinterpret_cast<float*>(&packet) + member * N + lane,
+                            reinterpret_cast<const float*>(&ray) + member, sizeof(float));
+            }
+        }
+        occluded(valid, scene, &packet, &arguments);
+        for (unsigned lane = 0; lane < count; ++lane)
+            rays[first + lane].tfar = packet.tfar[lane];
+    }
 }
-void occluded(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
-    RTCOccludedArguments arguments = occluded_arguments(context);
-    rtcOccluded8(valid, scene, &rays, &arguments);
+
+/// Marks the rays that are blocked by a negative tfar.
+void occluded_batch(RTCDevice device, RTCScene scene, QueryContext& context,
+                    std::span<RTCRay> rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    arguments.context = &context;
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
+        occluded_packets<8, RTCRay8>(scene, arguments, rays, &rtcOccluded8);
+    } else {
+        occluded_packets<4, RTCRay4>(scene, arguments, rays, &rtcOccluded4);
+    }
 }
-void occluded(const int* valid, RTCScene scene, QueryContext& context, RTCRay16& rays) {
-    RTCOccludedArguments arguments = occluded_arguments(context);
-    rtcOccluded16(valid, scene, &rays, &arguments);
-}
-void intersect1(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
+
+void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
     rtcIntersect1(scene, &ray, &arguments);
 }
+
 #else
 using QueryContext = RTCIntersectContext;
+constexpr auto kBatchSupported = RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED;
 
 void init_context(QueryContext& context) {
     rtcInitIntersectContext(&context);
-    //context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 }
-void occluded(const int* valid, RTCScene scene, QueryContext& context, RTCRay4& rays) {
-    rtcOccluded4(valid, scene, &context, &rays);
+
+/// Marks the rays that are blocked by a negative tfar.
+void occluded_batch(RTCDevice, RTCScene scene, QueryContext& context, std::span<RTCRay> rays) {
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded1M(scene, &context, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
 }
-void occluded(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
-    rtcOccluded8(valid, scene, &context, &rays);
-}
-void occluded(const int* valid, RTCScene scene, QueryContext& context, RTCRay16& rays) {
-    rtcOccluded16(valid, scene, &context, &rays);
-}
-void intersect1(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
+
+void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
     rtcIntersect1(scene, &context, &ray);
 }
 #endif
-
-/// Hits nearer than this cannot be told from the receiver. The filters would reject them one by
-/// one; starting the ray behind them is cheaper.
-float t_near(const ShadowRay& ray) {
-    const float near_m = rounding_distance_m(ray.receiver->position_ws);
-    return ray.to_infinity ? near_m : near_m / glm::length(ray.direction_ws);
-}
 
 struct DeviceDeleter {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -107,12 +127,24 @@ using DevicePtr = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDelete
 using ScenePtr = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
 using GeometryPtr = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryDeleter>;
 
+/// Hits that are farther than this from the receiver's plane, and whose own plane is as far from
+/// the receiver and from the light, block for sure: a thousand roundings, relative to the
+/// coordinates, where touches_only() tolerates seven. Only nearer ones are judged exactly, because
+/// fetching the corners costs as much as the ray.
+constexpr float kClearFraction = 1024.0f * static_cast<float>(kUnitRoundoff);
+
+float sum_of_magnitudes(Vec3 v) {
+    return glm::dot(glm::abs(v), Vec3(1.0f));
+}
+
 /// What the filters need to know about a query. Embree hands back the pointer to `base`.
 struct Query {
     QueryContext base;
     const Scene* scene = nullptr;
-    std::span<const ShadowRay> rays;  ///< occlusion queries: by ray id
-    Vec3 direction_ws{0.0f};          ///< queries for the first hit
+    float scene_magnitude_m = 0.0f;       ///< bounds the sum of a corner's coordinates
+    std::span<const float> local_scales;  ///< by instance: most that a world's metre can be in it
+    std::span<const ShadowRay> rays;      ///< occlusion queries: by ray id
+    Vec3 direction_ws{0.0f};              ///< queries for the first hit
 };
 
 const Query& query_of(const RTCFilterFunctionNArguments& arguments) {
@@ -148,13 +180,34 @@ bool hits_hole(const RTCFilterFunctionNArguments& arguments, const Scene& scene,
                    RTCHitN_v(arguments.hit, arguments.N, lane));
 }
 
+bool clearly_blocks(const Query& query, const RTCFilterFunctionNArguments& arguments,
+                    SurfaceId surface, unsigned lane, const ShadowRay& ray) {
+    // Embree gives the ray and the normal in the space of the mesh.
+    RTCRayN* rays = arguments.ray;
+    RTCHitN* hits = arguments.hit;
+    const unsigned n = arguments.N;
+    const Vec3 direction(RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane),
+                         RTCRayN_dir_z(rays, n, lane));
+    const Vec3 normal(RTCHitN_Ng_x(hits, n, lane), RTCHitN_Ng_y(hits, n, lane),
+                      RTCHitN_Ng_z(hits, n, lane));
+    const float t = RTCRayN_tfar(rays, n, lane);
+    const float reach_m = query.scene_magnitude_m + sum_of_magnitudes(ray.receiver->position_ws) +
+                          (ray.to_infinity ? 0.0f : sum_of_magnitudes(ray.direction_ws));
+    const float clear_m = kClearFraction * reach_m;
+    const float clear = clear_m * query.local_scales[surface.instance] * glm::length(normal);
+    const float slope = std::abs(glm::dot(normal, direction));
+    return t * glm::dot(ray.receiver->normal_ws, ray.direction_ws) > clear_m && t * slope > clear &&
+           (ray.to_infinity || (1.0f - t) * slope > clear);
+}
+
 template <bool kMasked>
 void reject_unblocking(const RTCFilterFunctionNArguments* arguments) {
     filter_hits(*arguments, [&](const Query& query, SurfaceId surface, unsigned lane) {
         const ShadowRay& ray = query.rays[RTCRayN_id(arguments->ray, arguments->N, lane)];
         if (surface == ray.receiver->id) return true;
         if (kMasked && hits_hole(*arguments, *query.scene, surface, lane)) return true;
-        return touches_only(world_triangle(*query.scene, surface), ray);
+        if (clearly_blocks(query, *arguments, surface, lane, ray)) return false;
+        return touches_only(*query.scene, world_triangle(*query.scene, surface), ray);
     });
 }
 
@@ -169,37 +222,22 @@ void reject_unseen(const RTCFilterFunctionNArguments* arguments) {
     });
 }
 
-/// The rays as a packet of N, and which of them are blocked.
-template <unsigned N, typename Packet>
-std::uint32_t blocked_packet(RTCScene top, QueryContext& context, std::span<const ShadowRay> rays,
-                             std::size_t first) {
-    alignas(Packet) int valid[N];
-    Packet packet;
-    const auto count = static_cast<unsigned>(std::min<std::size_t>(N, rays.size() - first));
-    for (unsigned lane = 0; lane < N; ++lane) {
-        valid[lane] = lane < count ? -1 : 0;
-        const ShadowRay& ray = rays[first + std::min(lane, count - 1)];
-        const Vec3 origin = ray.receiver->position_ws;
-        packet.org_x[lane] = origin.x;
-        packet.org_y[lane] = origin.y;
-        packet.org_z[lane] = origin.z;
-        packet.dir_x[lane] = ray.direction_ws.x;
-        packet.dir_y[lane] = ray.direction_ws.y;
-        packet.dir_z[lane] = ray.direction_ws.z;
-        packet.tnear[lane] = t_near(ray);
-        packet.tfar[lane] = ray.to_infinity ? std::numeric_limits<float>::infinity() : 1.0f;
-        packet.time[lane] = 0.0f;
-        packet.mask[lane] = ~0u;
-        packet.id[lane] = static_cast<unsigned>(first) + lane;
-        packet.flags[lane] = 0;
-    }
-    occluded(valid, top, context, packet);
-    std::uint32_t blocked = 0;
-    // Embree marks rays that hit something by an end at minus infinity.
-    for (unsigned lane = 0; lane < count; ++lane) {
-        if (packet.tfar[lane] < 0.0f) blocked |= 1u << lane;
-    }
-    return blocked << first;
+RTCRay embree_ray(const ShadowRay& ray, unsigned id) {
+    const Vec3 origin = lifted_position_ws(*ray.receiver);
+    RTCRay result;
+    result.org_x = origin.x;
+    result.org_y = origin.y;
+    result.org_z = origin.z;
+    result.tnear = 0.0f;
+    result.dir_x = ray.direction_ws.x;
+    result.dir_y = ray.direction_ws.y;
+    result.dir_z = ray.direction_ws.z;
+    result.time = 0.0f;
+    result.tfar = ray.to_infinity ? std::numeric_limits<float>::infinity() : 1.0f;
+    result.mask = ~0u;
+    result.id = id;
+    result.flags = 0;
+    return result;
 }
 
 }  // namespace
@@ -207,38 +245,35 @@ std::uint32_t blocked_packet(RTCScene top, QueryContext& context, std::span<cons
 class Caster::Impl {
 public:
     Impl(const Scene& scene, bool ignore_alpha, Progress& progress)
-        : scene_(scene), ignore_alpha_(ignore_alpha), device_(rtcNewDevice(nullptr)) {
+        : scene_(scene), ignore_alpha_(ignore_alpha), device_(rtcNewDevice(kDeviceConfig)) {
         if (!device_) {
             fail_machine("Embree: no device (error {})",
                          static_cast<int>(rtcGetDeviceError(nullptr)));
         }
         rtcSetDeviceErrorFunction(device_.get(), &Impl::keep_error, this);
-        packet_size_ = native_packet_size();
+        if (rtcGetDeviceProperty(device_.get(), kBatchSupported) == 0) {
+            fail_machine("Embree has no ray packets; it must be built with EMBREE_RAY_PACKETS=ON");
+        }
         build(progress);
         // Only errors of the build are wanted; queries report none, and Impl is immutable from
         // here.
         rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
     }
 
-    std::uint32_t blocked(std::span<const ShadowRay> rays) const {
+    void trace(std::span<ShadowRay> rays) const {
+        assert(rays.size() <= kBatchSize);
         Query query;
         init_context(query.base);
         query.scene = &scene_;
+        query.scene_magnitude_m = scene_magnitude_m_;
+        query.local_scales = local_scales_;
         query.rays = rays;
-        std::uint32_t result = 0;
-        for (std::size_t first = 0; first < rays.size(); first += packet_size_) {
-            switch (packet_size_) {
-                case 16:
-                    result |= blocked_packet<16, RTCRay16>(top_.get(), query.base, rays, first);
-                    break;
-                case 8:
-                    result |= blocked_packet<8, RTCRay8>(top_.get(), query.base, rays, first);
-                    break;
-                default:
-                    result |= blocked_packet<4, RTCRay4>(top_.get(), query.base, rays, first);
-            }
-        }
-        return result;
+        std::array<RTCRay, kBatchSize> batch;
+        for (unsigned i = 0; i < rays.size(); ++i)
+            batch[i] = embree_ray(rays[i], i);
+        occluded_batch(device_.get(), top_.get(), query.base, {batch.data(), rays.size()});
+        for (unsigned i = 0; i < rays.size(); ++i)
+            rays[i].blocked = batch[i].tfar < 0.0f;
     }
 
     SurfaceId first_seen(Vec3 origin_ws, Vec3 direction_ws, float t_min, float t_max) const {
@@ -258,20 +293,12 @@ public:
         ray.ray.mask = ~0u;
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        intersect1(top_.get(), query.base, ray);
+        intersect(top_.get(), query.base, ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
         return surface_of(reinterpret_cast<RTCHitN*>(&ray.hit), 1, 0);
     }
 
 private:
-    std::size_t native_packet_size() const {
-        const auto has = [&](RTCDeviceProperty property) {
-            return rtcGetDeviceProperty(device_.get(), property) != 0;
-        };
-        if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
-        return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
-    }
-
     void build(Progress& progress) {
         const std::vector<Instance>& instances = scene_.instances();
         std::vector<unsigned> uses(scene_.meshes().size());
@@ -280,11 +307,17 @@ private:
 
         top_ = new_scene(progress);
         mesh_scenes_.resize(scene_.meshes().size());
+        local_scales_.assign(instances.size(), 1.0f);
+        if (!scene_.bounds().empty()) {
+            scene_magnitude_m_ = sum_of_magnitudes(
+                glm::max(glm::abs(scene_.bounds().min), glm::abs(scene_.bounds().max)));
+        }
         for (std::uint32_t i = 0; i < instances.size(); ++i) {
             const Instance& instance = instances[i];
             const Mesh& mesh = scene_.meshes()[instance.mesh];
             if (mesh.triangles.empty()) continue;
-            if (uses[instance.mesh] == 1 || !invertible(instance.world_from_local)) {
+            const float local_scale = scale_of_inverse(instance.world_from_local);
+            if (uses[instance.mesh] == 1 || !std::isfinite(local_scale)) {
                 attach(top_, new_triangles(mesh, instance.world_from_local), i);
                 continue;
             }
@@ -295,17 +328,17 @@ private:
                 commit(mesh_scene, progress);
             }
             attach(top_, new_instance(mesh_scene, instance.world_from_local), i);
+            local_scales_[i] = local_scale;
         }
         commit(top_, progress);
     }
 
-    /// Embree takes rays into the mesh's space, which a flattened one does not have.
-    static bool invertible(const Mat4& world_from_local) {
+    /// The most by which the inverse lengthens a vector, or a little more: its Frobenius norm. Not
+    /// finite when there is no inverse, by which Embree would take rays into the mesh's space.
+    static float scale_of_inverse(const Mat4& world_from_local) {
         const glm::mat3 inverse = glm::inverse(glm::mat3(world_from_local));
-        for (int column = 0; column < 3; ++column) {
-            if (!std::isfinite(glm::dot(inverse[column], inverse[column]))) return false;
-        }
-        return true;
+        return std::sqrt(glm::dot(inverse[0], inverse[0]) + glm::dot(inverse[1], inverse[1]) +
+                         glm::dot(inverse[2], inverse[2]));
     }
 
     ScenePtr new_scene(Progress& progress) {
@@ -388,9 +421,10 @@ private:
 
     Scene scene_;
     bool ignore_alpha_;
-    std::size_t packet_size_ = 4;
     RTCError error_ = RTC_ERROR_NONE;
     std::string error_message_;
+    float scene_magnitude_m_ = 0.0f;
+    std::vector<float> local_scales_;
     DevicePtr device_;
     std::vector<ScenePtr> mesh_scenes_;  // one a mesh, null for those that are not instanced
     ScenePtr top_;
@@ -401,8 +435,8 @@ Caster::Caster(const Scene& scene, bool ignore_alpha, Progress& progress)
 
 Caster::~Caster() = default;
 
-std::uint32_t Caster::blocked(std::span<const ShadowRay> rays) const {
-    return impl_->blocked(rays);
+void Caster::trace(std::span<ShadowRay> rays) const {
+    impl_->trace(rays);
 }
 
 SurfaceId Caster::first_seen(Vec3 origin_ws, Vec3 direction_ws, float t_min, float t_max) const {

@@ -15,8 +15,8 @@ namespace gnomon::trace {
 /// Immutable once made, and safe to use from several threads.
 class Caster {
 public:
-    /// Rays that are traced together.
-    static constexpr std::size_t kPacketSize = 16;
+    /// The most rays that are traced together.
+    static constexpr std::size_t kBatchSize = 256;
 
     /// Keeps the scene alive. Throws Error{machine} when memory runs out, Error{cancelled}.
     Caster(const Scene& scene, bool ignore_alpha, Progress& progress);
@@ -24,11 +24,11 @@ public:
     Caster(const Caster&) = delete;
     Caster& operator=(const Caster&) = delete;
 
-    /// Which of at most kPacketSize rays are blocked before they reach the light, as bits from the
-    /// lowest. Everything blocks, whatever its facing, but the receiver's own triangle, triangles
-    /// that the ray touches only (touches_only), and the holes of masked materials. Fastest when
-    /// the rays are close together and alike in direction.
-    std::uint32_t blocked(std::span<const ShadowRay> rays) const;
+    /// Finds which of at most kBatchSize rays are blocked before they reach the light. Everything
+    /// blocks, whatever its facing, but the receiver's own triangle, triangles that the ray touches
+    /// only (touches_only), and the holes of masked materials. Fastest with many rays that are
+    /// close together and alike in direction.
+    void trace(std::span<ShadowRay> rays) const;
 
     /// The first triangle that is seen at `t_min` to `t_max` times `direction_ws` from `origin_ws`;
     /// kNoReceiver when none is. Holes and the backs of single-sided materials are not seen.

@@ -41,11 +41,6 @@ Vec3 cone_direction(Vec3 axis, float one_minus_cos, Vec2 u) {
     return scale * (disc.x * basis.s + disc.y * basis.t) + (1.0f - height) * axis;
 }
 
-LightSample sample_point(const Receiver& receiver, Vec3 position_ws) {
-    const Vec3 to_light = position_ws - receiver.position_ws;
-    return {to_light, glm::dot(receiver.normal_ws, to_light) > 0.0f ? 1.0f : 0.0f};
-}
-
 /// A place on a plane light: irradiance falls with both cosines and the squared distance.
 LightSample sample_area(const Receiver& receiver, Vec3 place_ws, Vec3 light_normal_ws) {
     const Vec3 to_light = place_ws - receiver.position_ws;
@@ -125,21 +120,9 @@ bool faces_light(const Receiver& receiver, const Light& light) {
            glm::dot(receiver.normal_ws, highest_direction(receiver, light)) > 0.0f;
 }
 
-LightSample sample_light(const Receiver& receiver, const DirectionalLight& light, Vec2 u) {
-    Vec3 direction = light.to_light_ws;
-    if (light.angular_diameter_rad > 0.0f) {
-        const float half_sine = std::sin(0.25f * light.angular_diameter_rad);
-        direction = cone_direction(direction, 2.0f * half_sine * half_sine, u);
-    }
-    return {direction, std::max(0.0f, glm::dot(receiver.normal_ws, direction))};
-}
-
-LightSample sample_light(const Receiver& receiver, const PointLight& light, Vec2) {
-    return sample_point(receiver, light.position_ws);
-}
-
-LightSample sample_light(const Receiver& receiver, const SpotLight& light, Vec2) {
-    return sample_point(receiver, light.position_ws);
+Vec3 sun_direction(const DirectionalLight& light, Vec2 u) {
+    const float half_sine = std::sin(0.25f * light.angular_diameter_rad);
+    return cone_direction(light.to_light_ws, 2.0f * half_sine * half_sine, u);
 }
 
 // The cone that the sphere fills, as in M. Pharr, W. Jakob, G. Humphreys, "Physically Based

@@ -4,6 +4,8 @@
 
 #include "trace/receiver.h"
 
+#include <algorithm>
+
 namespace gnomon::trace {
 
 /// True where any part of the light is above the receiver's plane and shines towards it: discs and
@@ -20,12 +22,29 @@ struct LightSample {
     float weight = 0.0f;
 };
 
+/// The only place of a light that is a point.
+inline LightSample sample_point(const Receiver& receiver, Vec3 position_ws) {
+    const Vec3 to_light = position_ws - receiver.position_ws;
+    return {to_light, glm::dot(receiver.normal_ws, to_light) > 0.0f ? 1.0f : 0.0f};
+}
+
+/// A direction in the sun's disc of which `u` is the place.
+Vec3 sun_direction(const DirectionalLight& light, Vec2 u);
+
 /// The place on the light that `u`, uniform in [0, 1)², picks; the only one when the light has no
 /// extent. Equal areas of `u` have equal solid angles (sun, sphere) or equal areas (disc,
 /// rectangle), and neighbours stay neighbours, so that strata of `u` are strata of the light.
-LightSample sample_light(const Receiver& receiver, const DirectionalLight& light, Vec2 u);
-LightSample sample_light(const Receiver& receiver, const PointLight& light, Vec2 u);
-LightSample sample_light(const Receiver& receiver, const SpotLight& light, Vec2 u);
+inline LightSample sample_light(const Receiver& receiver, const DirectionalLight& light, Vec2 u) {
+    const Vec3 direction =
+        light.angular_diameter_rad > 0.0f ? sun_direction(light, u) : light.to_light_ws;
+    return {direction, std::max(0.0f, glm::dot(receiver.normal_ws, direction))};
+}
+inline LightSample sample_light(const Receiver& receiver, const PointLight& light, Vec2) {
+    return sample_point(receiver, light.position_ws);
+}
+inline LightSample sample_light(const Receiver& receiver, const SpotLight& light, Vec2) {
+    return sample_point(receiver, light.position_ws);
+}
 LightSample sample_light(const Receiver& receiver, const SphereLight& light, Vec2 u);
 LightSample sample_light(const Receiver& receiver, const DiscLight& light, Vec2 u);
 LightSample sample_light(const Receiver& receiver, const RectLight& light, Vec2 u);

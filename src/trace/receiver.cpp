@@ -1,17 +1,17 @@
 // Where receivers are, and which hits of their rays are only touches.
 //
 // A shadow ray starts on a surface, and float arithmetic may find that it hits that surface, or a
-// neighbour in the same plane. The usual cure is a bias: start a little off the surface. A bias big
+// neighbour in the same plane. The usual cure is a bias: start well off the surface. A bias big
 // enough for grazing light, large triangles and coordinates far from the origin loses contact
 // shadows; the rounding bounds of M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering",
-// 4th edition (2023), section 6.8 hold for the ray's origin but not for the arithmetic of somebody
-// else's traversal. So nothing is moved here: the traversal proposes hits, and each is judged in
-// double against the scene's own corners. With exact numbers a triangle could not block when
+// 4th edition (2023), section 6.8 hold for the ray's origin, which we lift by them, but not for the
+// arithmetic of somebody else's traversal. So the traversal only proposes hits, and each is judged
+// in double against the scene's own corners. With exact numbers a triangle could not block when
 //   1. it is the receiver's own;
 //   2. it lies on or below the receiver's plane: light comes from above (covers duplicates,
 //      coplanar and convex neighbours at any grazing angle and any distance);
-//   3. the receiver lies in its plane and the ray leaves to its front (the other side of a concave
-//      edge; a ray that leaves to the back goes into the wall, and is blocked);
+//   3. the receiver lies in its plane, on the near side of a concave edge, and the ray does not
+//      leave to the far side;
 //   4. the light lies in its plane (a lamp flush with the ceiling).
 // "On" means within the error that rounding the corners to float can have made.
 
@@ -47,6 +47,14 @@ bool on_or_below(const Triangle& triangle, DVec3 point, DVec3 normal) {
     });
 }
 
+/// On which side of a plane a receiver is that lies in it to float's precision: the sign tells
+/// where most of its own triangle lies. Without one, the front.
+double side_of(const Scene& scene, const Receiver& receiver, DVec3 corner, DVec3 normal) {
+    if (receiver.id.instance == kNoSurface) return 1.0;
+    const auto& [a, b, c] = world_triangle(scene, receiver.id).corners_ws;
+    return glm::dot(normal, (a + b + c) / 3.0 - corner);
+}
+
 }  // namespace
 
 DVec3 Triangle::front_normal_ws() const {
@@ -72,16 +80,17 @@ Triangle world_triangle(const Scene& scene, SurfaceId surface) {
     return triangle;
 }
 
-bool touches_only(const Triangle& triangle, const ShadowRay& ray) {
-    const DVec3 point(ray.receiver->position_ws);
-    if (on_or_below(triangle, point, DVec3(ray.receiver->normal_ws))) return true;
+bool touches_only(const Scene& scene, const Triangle& triangle, const ShadowRay& ray) {
+    const Receiver& receiver = *ray.receiver;
+    const DVec3 point(receiver.position_ws);
+    if (on_or_below(triangle, point, DVec3(receiver.normal_ws))) return true;
 
     const DVec3 normal = triangle.front_normal_ws();
     const DVec3 direction(ray.direction_ws);
     const DVec3 corner = triangle.corners_ws[0];
     const DVec3 magnitude = triangle.magnitude + glm::abs(point);
     if (std::abs(glm::dot(normal, point - corner)) <= height_error(normal, magnitude)) {
-        return glm::dot(normal, direction) >= 0.0;
+        return glm::dot(normal, direction) * side_of(scene, receiver, corner, normal) >= 0.0;
     }
     if (ray.to_infinity) return false;
     const double light_height = glm::dot(normal, point + direction - corner);
@@ -97,8 +106,9 @@ Receiver receiver_on(const Triangle& triangle, SurfaceId surface, DVec3 origin_w
     const double t = glm::dot(normal, corners[0] - origin_ws) / glm::dot(normal, direction_ws);
     const DVec3 hit = origin_ws + t * direction_ws;
 
-    // Off the edges by what rounding to float can move it, lest it come to lie behind a wall there.
-    const double margin_m = 2.0 * kUnitRoundoff * glm::length(corners[0]);
+    // Off the edges by twice what lifted_position_ws() can move it, lest it come to lie behind a
+    // wall there.
+    const double margin_m = 4.0 * rounding_distance_m(Vec3(corners[0]));
     DVec3 weights;
     for (int i = 0; i < 3; ++i) {
         const DVec3 from = corners[(i + 1) % 3];

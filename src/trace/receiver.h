@@ -2,6 +2,8 @@
 
 #include <gnomon/scene.h>
 
+#include <glm/common.hpp>
+
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -52,16 +54,25 @@ struct ShadowRay {
     const Receiver* receiver = nullptr;
     Vec3 direction_ws{0.0f};
     bool to_infinity = false;
+    bool blocked = false;  ///< what Caster::trace() finds
 };
 
-/// True when `triangle`, which the ray was found to hit, is not in the ray's way as far as float
-/// coordinates can tell. See receiver.cpp.
-bool touches_only(const Triangle& triangle, const ShadowRay& ray);
+/// True when `triangle` of the scene, which the ray was found to hit, is not in the ray's way as
+/// far as float coordinates can tell. See receiver.cpp.
+bool touches_only(const Scene& scene, const Triangle& triangle, const ShadowRay& ray);
 
-/// How far rounding to float can have moved a position: a hit nearer than this, in metres, cannot
-/// be told from the position itself.
+/// How far rounding to float can have moved a position, at most, in metres.
 inline float rounding_distance_m(Vec3 position_ws) {
-    return static_cast<float>(kUnitRoundoff) * glm::length(position_ws);
+    const Vec3 magnitude = glm::abs(position_ws);
+    return static_cast<float>(kUnitRoundoff) * (magnitude.x + magnitude.y + magnitude.z);
+}
+
+/// Where the receiver's rays start: surely not below its plane, where they could pass beneath the
+/// foot of a wall, and above it by no more than rounding. Twice the rounding distance, for the
+/// position's own and for that of the sum.
+inline Vec3 lifted_position_ws(const Receiver& receiver) {
+    return receiver.position_ws +
+           2.0f * rounding_distance_m(receiver.position_ws) * receiver.normal_ws;
 }
 
 /// Where the ray from `origin_ws` along `direction_ws` meets the plane of the triangle, moved into

@@ -23,19 +23,27 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace gnomon::trace {
 
 namespace {
 
-/// Side of the square of pixels that make one packet of rays.
-constexpr unsigned kTilePx = 4;
-static_assert(kTilePx * kTilePx == Caster::kPacketSize);
+/// Side of the squares of pixels that are taken one after the other, so that rays that are traced
+/// together are close together.
+constexpr unsigned kTilePx = 8;
 
 /// Tiles or rows that one task does: some milliseconds of work, so that threads are even and a
 /// cancelled job ends at once.
 constexpr std::size_t kRaysPerTask = 1 << 14;
 constexpr std::size_t kRowsPerTask = 4;
+
+std::size_t tiles_along(unsigned pixels) {
+    return (std::size_t{pixels} + kTilePx - 1) / kTilePx;
+}
+
+template <typename LightType>
+inline constexpr bool kDirectional = std::is_same_v<LightType, DirectionalLight>;
 
 /// Rays through the centres of a camera's pixels, in double.
 class PixelRays {
@@ -66,33 +74,71 @@ private:
     Extent size_;
 };
 
-/// Visibility of one light at the receivers of up to a packet of pixels.
+/// Visibility of a light without extent at receivers, as many at a time as are traced together.
 template <typename LightType>
-class PacketEstimator {
+class HardShadows {
 public:
-    /// One ray to a light without extent when `strata` is null.
-    PacketEstimator(const Caster& caster, const LightType& light, const Strata* strata,
-                    unsigned seed)
-        : caster_(caster), light_(light), strata_(strata), seed_(seed) {}
+    HardShadows(const Caster& caster, const LightType& light) : caster_(caster), light_(light) {}
 
-    /// Adds receiver `index` of the picture, whose visibility is wanted in `out`.
-    void add(const Receiver& receiver, std::uint32_t index, float& out) {
+    /// Adds a receiver whose visibility is wanted in `out`, by the next finish() at the latest.
+    void add(const Receiver& receiver, std::size_t, float& out) {
         if (!receiver.exists()) {
             out = 1.0f;
-        } else if (strata_ != nullptr && !faces_light(receiver, light_)) {
+            return;
+        }
+        const LightSample place = sample_light(receiver, light_, Vec2(0.5f));
+        if (!(place.weight > 0.0f)) {
+            out = 0.0f;
+            return;
+        }
+        ShadowRay& ray = rays_[count_];
+        ray.receiver = &receiver;
+        ray.direction_ws = place.direction_ws;
+        ray.to_infinity = kDirectional<LightType>;
+        outs_[count_++] = &out;
+        if (count_ == rays_.size()) finish();
+    }
+
+    void finish() {
+        if (count_ > 0) caster_.trace({rays_.data(), count_});
+        for (std::size_t i = 0; i < count_; ++i)
+            *outs_[i] = rays_[i].blocked ? 0.0f : 1.0f;
+        count_ = 0;
+    }
+
+private:
+    const Caster& caster_;
+    const LightType& light_;
+    std::array<ShadowRay, Caster::kBatchSize> rays_;
+    std::array<float*, Caster::kBatchSize> outs_;
+    std::size_t count_ = 0;
+};
+
+/// The same for a light with extent: one sample of every receiver is traced together, then the
+/// next.
+template <typename LightType>
+class SoftShadows {
+public:
+    SoftShadows(const Caster& caster, const LightType& light, const Strata& strata, unsigned seed)
+        : caster_(caster), light_(light), strata_(strata), seed_(seed) {}
+
+    /// `index` of the receiver and the seed decide its samples.
+    void add(const Receiver& receiver, std::size_t index, float& out) {
+        if (!receiver.exists()) {
+            out = 1.0f;
+        } else if (!faces_light(receiver, light_)) {
             out = 0.0f;
         } else {
-            lanes_[count_++] = {&receiver, index, &out, 0.0, 0.0};
+            lanes_[count_++] = {&receiver, &out, static_cast<std::uint32_t>(index), 0.0, 0.0};
+            if (count_ == lanes_.size()) finish();
         }
     }
 
-    void run() {
-        const int samples = strata_ != nullptr ? strata_->count() : 1;
-        for (int sample = 0; sample < samples; ++sample) {
+    void finish() {
+        for (int sample = 0; sample < strata_.count() && count_ > 0; ++sample)
             cast(sample);
-        }
         for (std::size_t i = 0; i < count_; ++i) {
-            Lane& lane = lanes_[i];
+            const Lane& lane = lanes_[i];
             *lane.out = lane.weight > 0.0 ? static_cast<float>(lane.unblocked / lane.weight)
                                           : highest_visibility(*lane.receiver);
         }
@@ -100,57 +146,70 @@ public:
     }
 
 private:
-    static constexpr bool kDirectional = std::is_same_v<LightType, DirectionalLight>;
-
     struct Lane {
         const Receiver* receiver;
-        std::uint32_t index;
         float* out;
+        std::uint32_t index;
         double weight, unblocked;
     };
 
-    Vec2 place_of(std::uint32_t index, int sample) const {
-        if (strata_ == nullptr) return {0.5f, 0.5f};
-        return strata_->point(sample, random_2d(index, static_cast<std::uint32_t>(sample), seed_));
-    }
-
     void cast(int sample) {
-        std::array<ShadowRay, Caster::kPacketSize> rays;
-        std::array<float, Caster::kPacketSize> weights;
-        std::array<Lane*, Caster::kPacketSize> lanes;
-        std::size_t rays_count = 0;
+        std::size_t rays = 0;
         for (std::size_t i = 0; i < count_; ++i) {
             Lane& lane = lanes_[i];
+            const Vec2 jitter = random_2d(lane.index, static_cast<std::uint32_t>(sample), seed_);
             const LightSample place =
-                sample_light(*lane.receiver, light_, place_of(lane.index, sample));
+                sample_light(*lane.receiver, light_, strata_.point(sample, jitter));
             if (!(place.weight > 0.0f)) continue;
-            rays[rays_count] = {lane.receiver, place.direction_ws, kDirectional};
-            weights[rays_count] = place.weight;
-            lanes[rays_count++] = &lane;
+            rays_[rays] = {lane.receiver, place.direction_ws, kDirectional<LightType>};
+            weights_[rays] = place.weight;
+            lane_of_ray_[rays++] = &lane;
         }
-        if (rays_count == 0) return;
-        const std::uint32_t blocked = caster_.blocked({rays.data(), rays_count});
-        for (std::size_t i = 0; i < rays_count; ++i) {
-            lanes[i]->weight += weights[i];
-            if ((blocked >> i & 1u) == 0) lanes[i]->unblocked += weights[i];
+        if (rays > 0) caster_.trace({rays_.data(), rays});
+        for (std::size_t i = 0; i < rays; ++i) {
+            lane_of_ray_[i]->weight += weights_[i];
+            if (!rays_[i].blocked) lane_of_ray_[i]->unblocked += weights_[i];
         }
     }
 
-    /// What counts when all samples are below the horizon: the light's highest place, if it is
-    /// above.
+    /// What counts when all samples are below the horizon: the light's highest place, which is not.
     float highest_visibility(const Receiver& receiver) const {
-        if (strata_ == nullptr) return 0.0f;
-        const ShadowRay ray{&receiver, highest_direction(receiver, light_), kDirectional};
-        return caster_.blocked({&ray, 1}) == 0 ? 1.0f : 0.0f;
+        ShadowRay ray{&receiver, highest_direction(receiver, light_), kDirectional<LightType>};
+        caster_.trace({&ray, 1});
+        return ray.blocked ? 0.0f : 1.0f;
     }
 
     const Caster& caster_;
     const LightType& light_;
-    const Strata* strata_;
+    const Strata& strata_;
     unsigned seed_;
-    std::array<Lane, Caster::kPacketSize> lanes_;
+    std::array<Lane, Caster::kBatchSize> lanes_;
     std::size_t count_ = 0;
+    // The rays of one sample: of those lanes for which it is above the horizon.
+    std::array<ShadowRay, Caster::kBatchSize> rays_;
+    std::array<float, Caster::kBatchSize> weights_;
+    std::array<Lane*, Caster::kBatchSize> lane_of_ray_;
 };
+
+/// Calls shadows.add() for the pixels of tiles [first, last), and finishes.
+template <typename Shadows>
+void add_tiles(Shadows& shadows, std::span<const Receiver> receivers, Extent size,
+               std::size_t first, std::size_t last, std::span<float> out) {
+    const std::size_t tiles_across = tiles_along(size.width);
+    for (std::size_t tile = first; tile < last; ++tile) {
+        const unsigned left = static_cast<unsigned>(tile % tiles_across) * kTilePx;
+        const unsigned top = static_cast<unsigned>(tile / tiles_across) * kTilePx;
+        for (unsigned y = top; y < std::min(top + kTilePx, size.height); ++y) {
+            for (unsigned x = left; x < std::min(left + kTilePx, size.width); ++x) {
+                const std::size_t i = std::size_t{y} * size.width + x;
+                // The next tile's: its rows are too far apart for the processor to foresee.
+                __builtin_prefetch(&receivers[std::min(i + kTilePx, receivers.size() - 1)]);
+                shadows.add(receivers[i], i, out[i]);
+            }
+        }
+    }
+    shadows.finish();
+}
 
 }  // namespace
 
@@ -187,28 +246,20 @@ void Tracer::visibility(std::span<const Receiver> receivers, Extent size, const 
     assert(out.size() == receivers.size());
     const bool soft = has_extent(light);
     const Strata strata(soft ? samples : 1);
-    const unsigned tiles_across = (size.width + kTilePx - 1) / kTilePx;
-    const unsigned tiles_down = (size.height + kTilePx - 1) / kTilePx;
     const std::size_t rays_per_tile =
-        Caster::kPacketSize * static_cast<std::size_t>(strata.count());
+        std::size_t{kTilePx} * kTilePx * static_cast<std::size_t>(strata.count());
     const std::size_t tiles_per_task = std::max<std::size_t>(1, kRaysPerTask / rays_per_tile);
-
     const auto trace_tiles = [&](const auto& kind, std::size_t first, std::size_t last) {
-        PacketEstimator estimator(*caster_, kind, soft ? &strata : nullptr, seed);
-        for (std::size_t tile = first; tile < last; ++tile) {
-            const unsigned left = static_cast<unsigned>(tile % tiles_across) * kTilePx;
-            const unsigned top = static_cast<unsigned>(tile / tiles_across) * kTilePx;
-            for (unsigned y = top; y < std::min(top + kTilePx, size.height); ++y) {
-                for (unsigned x = left; x < std::min(left + kTilePx, size.width); ++x) {
-                    const std::size_t i = std::size_t{y} * size.width + x;
-                    estimator.add(receivers[i], static_cast<std::uint32_t>(i), out[i]);
-                }
-            }
-            estimator.run();
+        if (soft) {
+            SoftShadows shadows(*caster_, kind, strata, seed);
+            add_tiles(shadows, receivers, size, first, last, out);
+        } else {
+            HardShadows shadows(*caster_, kind);
+            add_tiles(shadows, receivers, size, first, last, out);
         }
     };
     parallel_for(
-        std::size_t{tiles_across} * tiles_down, tiles_per_task,
+        tiles_along(size.width) * tiles_along(size.height), tiles_per_task,
         [&](std::size_t first, std::size_t last) {
             std::visit([&](const auto& kind) { trace_tiles(kind, first, last); }, light);
         },
