@@ -44,6 +44,10 @@ struct Candidate {
 /// All devices, best first; `info.index` is the place in this list.
 std::vector<Candidate> rank_devices(const Instance& instance);
 
+/// Discrete ones first, then integrated, CPU and others, else in the order given; sets
+/// `info.index`.
+std::vector<Candidate> rank(std::vector<Candidate> candidates);
+
 /// The first usable one, or the one that `wanted` (index or part of a name) means.
 const Candidate& choose_device(const std::vector<Candidate>& candidates, const std::string& wanted);
 

@@ -177,6 +177,10 @@ std::vector<Candidate> rank_devices(const Instance& instance) {
     for (const VkPhysicalDevice device : instance.physical_devices()) {
         candidates.push_back({device, describe(device)});
     }
+    return rank(std::move(candidates));
+}
+
+std::vector<Candidate> rank(std::vector<Candidate> candidates) {
     std::stable_sort(
         candidates.begin(), candidates.end(),
         [](const Candidate& a, const Candidate& b) { return a.info.type < b.info.type; });

@@ -35,9 +35,13 @@ Memory& Memory::operator=(Memory&& other) noexcept {
     return *this;
 }
 
+// Delegating makes the object whole at once, so that its destructor frees what was made before a
+// step that fails.
 Buffer::Buffer(const Device& device, std::uint64_t size_bytes, VkBufferUsageFlags usage,
                Placement placement)
-    : device_(&device), size_(std::max<std::uint64_t>(size_bytes, 16)) {
+    : Buffer() {
+    device_ = &device;
+    size_ = std::max<std::uint64_t>(size_bytes, 16);
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size_, .usage = usage};
     check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), "creating a buffer");
@@ -92,8 +96,10 @@ VkImageAspectFlags aspects_of(VkFormat format) {
 
 }  // namespace
 
-Image::Image(const Device& device, const ImageInfo& info)
-    : device_(&device), aspects_(aspects_of(info.format)), info_(info) {
+Image::Image(const Device& device, const ImageInfo& info) : Image() {
+    device_ = &device;
+    aspects_ = aspects_of(info.format);
+    info_ = info;
     const unsigned limit = device.limits().maxImageDimension2D;
     if (info.size.width > limit || info.size.height > limit) {
         fail_input("an image of {}x{} is larger than the device's limit of {} a side",

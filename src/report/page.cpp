@@ -126,11 +126,11 @@ json error_table(const Comparison& error) {
              {"lit", short_percent(error.false_lit)},
              {"shadow", short_percent(error.false_shadow)}},
             {{"kind", "stray"},
-             {"meaning", "of those, away from any true edge"},
+             {"meaning", "of false: away from any true edge"},
              {"lit", short_percent(error.stray_lit)},
              {"shadow", short_percent(error.stray_shadow)}},
             {{"kind", "artefact"},
-             {"meaning", "of those, farther than its texels explain"},
+             {"meaning", "of false: farther than its texels explain"},
              {"lit", short_percent(error.artefact_lit)},
              {"shadow", short_percent(error.artefact_shadow)}}};
 }

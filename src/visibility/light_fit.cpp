@@ -151,7 +151,8 @@ LightFit fit_directional(const DirectionalLight& light, const Camera& camera, Ex
         }
     }
     const double side = std::max({high.x - low.x, high.y - low.y, 1e-6});
-    const double used_texels = std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
+    const double used_texels =
+        std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
     const double texel_m = side / used_texels;
     const double depth_m = std::max(high.z - low.z, texel_m);
 
@@ -178,8 +179,10 @@ LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texe
     // Nearer than this to the light nothing is resolved; reversed Z keeps precision all the same.
     constexpr double kNearFraction = 1e-4;
     const double near_m = kNearFraction * std::max(bounds.diagonal(), 1e-3f);
-    const double used_texels = std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
-    const double half = std::tan(static_cast<double>(light.outer_angle_rad)) * size_texels / used_texels;
+    const double used_texels =
+        std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
+    const double half =
+        std::tan(static_cast<double>(light.outer_angle_rad)) * size_texels / used_texels;
 
     const DVec3 axis = glm::normalize(DVec3(light.direction_ws));
     const glm::dmat4 view = light_from_world(-axis, DVec3(light.position_ws));

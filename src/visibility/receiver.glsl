@@ -22,10 +22,14 @@ vec3 to_light_ws(LightShape light, vec3 p_ws) {
 bool faces_light(LightShape light, vec3 p_ws, vec3 normal_ws) {
     vec3 to_center = to_light_ws(light, p_ws);
     float height = dot(normal_ws, to_center);
+    bool shines_here = light.kind < kLightDisc || dot(light.normal, to_center) < 0.0;
     switch (light.kind) {
         case kLightDirectional:
-        case kLightSphere:
             height += light.radius;
+            break;
+        case kLightSphere:  // to the outside
+            height += light.radius;
+            shines_here = dot(to_center, to_center) > light.radius * light.radius;
             break;
         case kLightDisc:
             height += light.radius * length(cross(normal_ws, light.normal));
@@ -34,7 +38,6 @@ bool faces_light(LightShape light, vec3 p_ws, vec3 normal_ws) {
             height += abs(dot(normal_ws, light.half_u)) + abs(dot(normal_ws, light.half_v));
             break;
     }
-    bool shines_here = light.kind < kLightDisc || dot(light.normal, to_center) < 0.0;
     return height > 0.0 && shines_here;
 }
 

@@ -6,6 +6,7 @@
 #include "visibility/receiver.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint kFilter = kFilterBox4x4;
 
 layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
@@ -65,7 +66,7 @@ float lit_by_map(vec3 p_ws) {
     if (p_ls.w <= 0.0) return 1.0;  // behind a spot
     vec3 uvz = vec3(0.5 * p_ls.xy / p_ls.w + 0.5, p_ls.z / p_ls.w);
     if (any(lessThan(uvz.xy, vec2(0.0))) || any(greaterThan(uvz.xy, vec2(1.0)))) return 1.0;
-    switch (frame.filter_kind) {
+    switch (kFilter) {
         case kFilterNearest:
             return lit_nearest(uvz);
         case kFilterHardware2x2:

@@ -29,12 +29,11 @@ enum class Filter { nearest, hardware_2x2, box_4x4 };
 struct Options {
     int map_size = 2048;
     Filter filter = Filter::box_4x4;
-    // A plane whose depth changes along one axis of the map is free of acne when bias_slope +
-    // normal_offset >= 1 / sqrt(2), along the diagonal when it is 1. Two thirds of it as an offset
+    // A plane is free of acne when bias_slope + normal_offset is 1. Two thirds of it as an offset
     // spare thin casters, one third along the light spares corners.
     double bias_constant = 0.1;
-    double bias_slope = 0.25;
-    double normal_offset = 0.5;
+    double bias_slope = 0.33;
+    double normal_offset = 0.67;
 };
 
 const ParamTable<Options>& param_table() {
@@ -45,9 +44,9 @@ const ParamTable<Options>& param_table() {
                 "how the map is read"),
          number("bias_constant", &Options::bias_constant, 0.0, 100.0, "texels",
                 "receivers are moved towards the light by this"),
-         number("bias_slope", &Options::bias_slope, 0.0, 10.0, "1",
+         number("bias_slope", &Options::bias_slope, 0.0, 16.0, "1",
                 "and by this times the depth that their plane gains over the filter's reach"),
-         number("normal_offset", &Options::normal_offset, 0.0, 10.0, "1",
+         number("normal_offset", &Options::normal_offset, 0.0, 16.0, "1",
                 "and off their surface by this times what frees a plane from the filter's reach")});
     return table;
 }
@@ -58,6 +57,14 @@ float filter_radius_texels(Filter filter) {
     return kRadii[static_cast<std::size_t>(filter)];
 }
 
+/// How far from the receiver a texel's centre may lie and still decide between light and shadow. A
+/// filter of several texels passes over the outer quarter of its reach, which has little weight.
+float deciding_reach_texels(Filter filter) {
+    constexpr float kDecidingShare = 0.75f;
+    const float reach_texels = std::sqrt(2.0f) * filter_radius_texels(filter);
+    return filter == Filter::nearest ? reach_texels : kDecidingShare * reach_texels;
+}
+
 class ShadowMap final : public GpuTechnique {
 public:
     ShadowMap(Context& context, const Options& options)
@@ -66,11 +73,12 @@ public:
           map_(context.impl().device()) {
         const gpu::Device& device = context.impl().device();
         using enum gpu::BindingType;
-        lookup_ = gpu::Pipeline(
-            device,
-            {.code = shaders::shadow_map_comp,
-             .layout = {{texture, storage_image, storage_image, texture, texture, storage_buffer},
-                        sizeof(shared::ReceiverPush)}});
+        gpu::ComputePipelineInfo lookup;
+        lookup.code = shaders::shadow_map_comp;
+        lookup.layout = {{texture, storage_image, storage_image, texture, texture, storage_buffer},
+                         sizeof(shared::ReceiverPush)};
+        lookup.constants = {static_cast<std::uint32_t>(options.filter)};
+        lookup_ = gpu::Pipeline(device, lookup);
         nearest_ = gpu::Sampler(device, {});
         compare_ = gpu::Sampler(device, {.filter = VK_FILTER_LINEAR, .compare = true});
         frame_ = gpu::Buffer(device, sizeof(shared::ShadowMapFrame),
@@ -97,11 +105,10 @@ private:
                 .texel_m = fit.texel_m,
                 .axis_ws = fit.axis_ws,
                 .perspective = fit.perspective ? 1.0f : 0.0f,
-                .reach_texels = std::sqrt(2.0f) * filter_radius_texels(options_.filter),
+                .reach_texels = deciding_reach_texels(options_.filter),
                 .bias_constant = static_cast<float>(options_.bias_constant),
                 .bias_slope = static_cast<float>(options_.bias_slope),
-                .normal_offset = static_cast<float>(options_.normal_offset),
-                .filter_kind = static_cast<std::uint32_t>(options_.filter)};
+                .normal_offset = static_cast<float>(options_.normal_offset)};
     }
 
     void record(gpu::Commands& commands, const RecordInput& input,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 namespace gnomon::shadow_volumes {
@@ -80,20 +81,27 @@ private:
 
 void classify_pieces(Adjacency& mesh, const std::vector<Vec3>& positions) {
     const std::size_t count = mesh.triangles.size();
+    const std::size_t edge_count = mesh.edges.size() - 1;
     Pieces pieces(count);
-    std::vector<std::uint32_t> open_triangles;
-    for (std::size_t e = 0; e + 1 < mesh.edges.size(); ++e) {
-        int balance = 0;
+    for (std::size_t e = 0; e < edge_count; ++e) {
+        // Where more than two triangles meet, solids may touch, each wound in its own way.
         const std::uint32_t first = mesh.edges[e].first_use;
-        for (std::uint32_t u = first; u < mesh.edges[e + 1].first_use; ++u) {
-            balance += mesh.uses[u].forward != 0 ? 1 : -1;
-            pieces.merge(mesh.uses[first].triangle, mesh.uses[u].triangle);
-        }
-        if (balance != 0) open_triangles.push_back(mesh.uses[first].triangle);
+        if (mesh.edges[e + 1].first_use != first + 2) continue;
+        pieces.merge(mesh.uses[first].triangle, mesh.uses[first + 1].triangle);
     }
     std::vector<bool> open(count);
-    for (const std::uint32_t t : open_triangles)
-        open[pieces.find(t)] = true;
+    std::vector<int> balance(count);  // of each piece at the edge in hand
+    for (std::size_t e = 0; e < edge_count; ++e) {
+        const std::span uses(mesh.uses.begin() + mesh.edges[e].first_use,
+                             mesh.uses.begin() + mesh.edges[e + 1].first_use);
+        for (const EdgeUse use : uses)
+            balance[pieces.find(use.triangle)] += use.forward != 0 ? 1 : -1;
+        for (const EdgeUse use : uses) {
+            const std::uint32_t piece = pieces.find(use.triangle);
+            if (balance[piece] != 0) open[piece] = true;
+            balance[piece] = 0;
+        }
+    }
 
     // Six times the enclosed volume, about a point of the mesh so that it does not cancel.
     std::vector<double> volume(count);

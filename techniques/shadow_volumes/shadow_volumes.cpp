@@ -4,8 +4,8 @@
 // Everitt and M. Kilgard, "Practical and Robust Stenciled Shadow Volumes", 2002, for volumes
 // without end; M. McGuire, "Efficient Shadow Volume Rendering", GPU Gems 2004, chapter 9.
 // Departures: meshes of any kind, by counting how often and which way each edge is used (P.
-// Bergeron, "A General Version of Crow's Shadow Volumes", CG&A 1986; B. Kim et al., "Shadow Volumes
-// for Non-Manifold Meshes", 2008).
+// Bergeron, "A General Version of Crow's Shadow Volumes", CG&A 1986; B. Kim et al., "A
+// Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters", JGT 2008).
 
 #include "adjacency.h"
 #include "base/parallel.h"
@@ -101,13 +101,14 @@ public:
         using enum gpu::BindingType;
         volume_ = volume_pipeline(device, false);
         volume_clamped_ = volume_pipeline(device, true);
-        resolve_ =
-            gpu::Pipeline(device, {.code = shaders::resolve_comp,
-                                   .layout = {{texture, storage_image, storage_image, texture,
-                                               storage_image, storage_buffer, storage_buffer,
-                                               storage_buffer, storage_buffer, storage_buffer},
-                                              sizeof(gnomon::shared::ReceiverPush)},
-                                   .constants = {options.mend_edges ? 1u : 0u}});
+        gpu::ComputePipelineInfo resolve;
+        resolve.code = shaders::resolve_comp;
+        resolve.layout = {
+            {texture, storage_image, storage_image, texture, storage_image, storage_buffer,
+             storage_buffer, storage_buffer, storage_buffer, storage_buffer},
+            sizeof(gnomon::shared::ReceiverPush)};
+        resolve.constants = {options.mend_edges ? 1u : 0u};
+        resolve_ = gpu::Pipeline(device, resolve);
         view_ = gpu::Buffer(device, sizeof(Mat4),
                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                             gpu::Placement::device);
@@ -138,7 +139,7 @@ private:
 
     void build_volumes(const Scene& scene, HomogeneousLight light_ws) {
         const std::size_t count = scene.instances().size();
-        std::vector<std::vector<VolumeTriangle>> caps(count);
+        std::vector<std::vector<VolumeTriangle>> caps(2 * count);  // clockwise ones last
         std::vector<std::vector<VolumeSide>> sides(count);
         parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
@@ -147,19 +148,32 @@ private:
                     build_volume(scene.meshes()[instance.mesh], adjacencies_[instance.mesh],
                                  instance.world_from_local, light_ws, sources_[i]);
                 caps[i] = std::move(volume.caps);
+                caps[count + i] = std::move(volume.clockwise_caps);
                 sides[i] = std::move(volume.sides);
             }
         });
         caps_.fill(context().device(), caps);
+        clockwise_caps_ = 0;
+        for (std::size_t i = count; i < caps.size(); ++i)
+            clockwise_caps_ += static_cast<std::uint32_t>(caps[i].size());
         sides_.fill(context().device(), sides);
     }
 
     void draw_part(gpu::Commands& commands, const gpu::Pipeline& pipeline, VolumePush push,
-                   std::uint32_t part, std::uint32_t vertices) {
+                   std::uint32_t part, std::uint32_t vertices, std::uint32_t first = 0) {
         if (vertices == 0) return;
         push.part = part;
         commands.push(pipeline, push);
-        vkCmdDraw(commands.handle(), vertices, 1, 0, 0);
+        vkCmdDraw(commands.handle(), vertices, 1, first, 0);
+    }
+
+    void draw_caps(gpu::Commands& commands, const gpu::Pipeline& pipeline, const VolumePush& push,
+                   std::uint32_t part) {
+        const std::uint32_t first_clockwise = 3 * (caps_.count() - clockwise_caps_);
+        draw_part(commands, pipeline, push, part, first_clockwise);
+        vkCmdSetFrontFace(commands.handle(), VK_FRONT_FACE_CLOCKWISE);
+        draw_part(commands, pipeline, push, part, 3 * clockwise_caps_, first_clockwise);
+        vkCmdSetFrontFace(commands.handle(), VK_FRONT_FACE_COUNTER_CLOCKWISE);
     }
 
     void draw_volumes(gpu::Commands& commands, const RecordInput& input,
@@ -181,11 +195,8 @@ private:
                       {gpu::StorageBuffer{&input.scene.instances()},
                        gpu::StorageBuffer{&input.scene.positions()},
                        gpu::StorageBuffer{&caps_.buffer()}, gpu::StorageBuffer{&sides_.buffer()}});
-        draw_part(commands, pipeline, push, shadow_volumes::shared::kNearCaps, 3 * caps_.count());
-        if (!at_infinity) {
-            draw_part(commands, pipeline, push, shadow_volumes::shared::kFarCaps,
-                      3 * caps_.count());
-        }
+        draw_caps(commands, pipeline, push, shadow_volumes::shared::kNearCaps);
+        if (!at_infinity) draw_caps(commands, pipeline, push, shadow_volumes::shared::kFarCaps);
         draw_part(commands, pipeline, push, shadow_volumes::shared::kSides,
                   (at_infinity ? 3u : 6u) * sides_.count());
         commands.end_drawing();
@@ -225,6 +236,7 @@ private:
     std::vector<Adjacency> adjacencies_;  // of each mesh
     std::vector<VolumeSource> sources_;   // of each instance
     RecordBuffer<VolumeTriangle> caps_;
+    std::uint32_t clockwise_caps_ = 0;  // of them, at the end
     RecordBuffer<VolumeSide> sides_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace gnomon::shadow_volumes {
 
@@ -34,8 +35,29 @@ bool may_be_inside(const std::vector<DVec3>& positions, HomogeneousLight light_w
     return glm::all(glm::greaterThanEqual(light, low)) && glm::all(glm::lessThanEqual(light, high));
 }
 
+/// The greatest magnitudes that make a coordinate in the world, of a corner or of the light. A
+/// light at infinity needs none.
+DVec3 magnitude(const Mesh& mesh, const glm::dmat4& world_from_local, HomogeneousLight light_ws) {
+    if (light_ws.w == 0.0f) return DVec3(0.0);
+    DVec3 local(0.0);
+    for (const Vec3 p : mesh.positions)
+        local = glm::max(local, glm::abs(DVec3(p)));
+    const DVec3 world = glm::abs(DVec3(world_from_local[0])) * local.x +
+                        glm::abs(DVec3(world_from_local[1])) * local.y +
+                        glm::abs(DVec3(world_from_local[2])) * local.z +
+                        glm::abs(DVec3(world_from_local[3]));
+    return world + glm::abs(DVec3(light_ws));
+}
+
+/// Roundings to float behind a light's height over a triangle's plane: two in each coordinate (in
+/// the mesh and in the instance's matrix), which may tilt the plane by as much again, and the
+/// light's own.
+constexpr double kRoundings = 2 * 2 + 2 + 1;
+constexpr double kUnitRoundoff = 0.5 * std::numeric_limits<float>::epsilon();
+
 std::vector<Facing> classify(const Adjacency& adjacency, const std::vector<DVec3>& positions,
-                             const glm::dmat4& world_from_local, HomogeneousLight light_ws) {
+                             const glm::dmat4& world_from_local, HomogeneousLight light_ws,
+                             DVec3 magnitude) {
     const double determinant = glm::determinant(glm::dmat3(world_from_local));
     const bool each_triangle = determinant == 0.0 || may_be_inside(positions, light_ws);
     const bool mirrored = determinant < 0.0;
@@ -45,7 +67,12 @@ std::vector<Facing> classify(const Adjacency& adjacency, const std::vector<DVec3
         const DVec3 a = positions[t.x];
         const DVec3 normal = glm::cross(positions[t.y] - a, positions[t.z] - a);
         const DVec3 to_light = DVec3(light_ws) - a * static_cast<double>(light_ws.w);
-        const bool towards = glm::dot(normal, to_light) > 0.0;
+        const double height = glm::dot(normal, to_light);
+        // A light in the triangle's plane (a lamp flush with a ceiling) is hidden by none of it,
+        // on whichever side of the plane rounding has put it.
+        const double error = kRoundings * kUnitRoundoff * glm::dot(glm::abs(normal), magnitude);
+        if (std::abs(height) <= error) continue;
+        const bool towards = height > 0.0;
         facing[i] = towards ? Facing::towards : Facing::away;
         if (each_triangle || !adjacency.closed[i]) continue;
         const bool outside_towards = towards != (adjacency.inside_out[i] != mirrored);
@@ -62,13 +89,14 @@ Volume build_volume(const Mesh& mesh, const Adjacency& adjacency, const Mat4& wo
     if (adjacency.triangles.empty()) return volume;
     const glm::dmat4 transform(world_from_local);
     const std::vector<DVec3> positions = world_positions(mesh, transform);
-    const std::vector<Facing> facing = classify(adjacency, positions, transform, light_ws);
+    const std::vector<Facing> facing =
+        classify(adjacency, positions, transform, light_ws, magnitude(mesh, transform, light_ws));
 
     for (std::size_t i = 0; i < facing.size(); ++i) {
         if (facing[i] == Facing::left_out) continue;
         const UVec3 t = adjacency.triangles[i] + source.first_vertex;
-        const bool towards = facing[i] == Facing::towards;
-        volume.caps.push_back({source.slot, t.x, towards ? t.y : t.z, towards ? t.z : t.y});
+        auto& caps = facing[i] == Facing::towards ? volume.caps : volume.clockwise_caps;
+        caps.push_back({source.slot, t.x, t.y, t.z});
     }
     for (std::size_t e = 0; e + 1 < adjacency.edges.size(); ++e) {
         const Edge& edge = adjacency.edges[e];

@@ -13,10 +13,12 @@ namespace gnomon::shadow_volumes {
 /// The light as a point of projective space: (position, 1) or (direction to the light, 0).
 using HomogeneousLight = Vec4;
 
-/// The shadow volume of one instance: its caps' triangles, counter-clockwise seen from the light,
-/// and the edges whose sides close it, run so that the volume is to their left seen from the light.
+/// The shadow volume of one instance: its caps' triangles, counter-clockwise seen from the light or
+/// clockwise, and the edges whose sides close it, run so that the volume is to their left seen from
+/// the light. A triangle keeps the order of its corners in the mesh: clipped in another one it has
+/// other depths than the receivers on it.
 struct Volume {
-    std::vector<shared::VolumeTriangle> caps;
+    std::vector<shared::VolumeTriangle> caps, clockwise_caps;
     std::vector<shared::VolumeSide> sides;
 };
 

@@ -2,18 +2,28 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// Caps and sides of shadow volumes, pulled from records: three vertices a cap, three a side of a light
-// at infinity (whose volumes end in one point there), six a side of other lights.
+// Caps and sides of shadow volumes, pulled from records: three vertices a cap, three a side of a
+// light at infinity (whose volumes end in one point there), six a side of other lights.
 
 #include "raster/scene.shared.h"
 #include "raster/transform.glsl"
 #include "shadow_volumes.shared.h"
 
-layout(set = 0, binding = 0, scalar) readonly buffer Instances { SceneInstance instances[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer Positions { vec3 positions[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer Caps { VolumeTriangle caps[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer Sides { VolumeSide sides[]; };
-layout(push_constant, scalar) uniform Push { VolumePush push; };
+layout(set = 0, binding = 0, scalar) readonly buffer Instances {
+    SceneInstance instances[];
+};
+layout(set = 0, binding = 1, scalar) readonly buffer Positions {
+    vec3 positions[];
+};
+layout(set = 0, binding = 2, scalar) readonly buffer Caps {
+    VolumeTriangle caps[];
+};
+layout(set = 0, binding = 3, scalar) readonly buffer Sides {
+    VolumeSide sides[];
+};
+layout(push_constant, scalar) uniform Push {
+    VolumePush push;
+};
 
 invariant gl_Position;
 

@@ -1,0 +1,400 @@
+#include "visibility/light_fit.h"
+
+#include <gnomon/error.h>
+
+#include <glm/ext/matrix_double4x4.hpp>
+#include <glm/ext/vector_double4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace gnomon {
+namespace {
+
+constexpr unsigned kMapSize = 1024;
+constexpr float kMarginTexels = 3.0f;
+
+/// Greatest |x| and |y| of what must be within the margin.
+constexpr double kInnerNdc = 1.0 - 2.0 * kMarginTexels / kMapSize;
+
+/// A point in a light's map, and how far rounding the map's matrix to float may have moved it.
+struct Projected {
+    DVec3 ndc;
+    DVec3 rounding;
+};
+
+Projected project(const LightFit& fit, DVec3 p_ws) {
+    constexpr double kRoundoff = 1.0 / (1 << 24);
+    const glm::dmat4 clip(fit.clip_from_world);
+    const glm::dvec4 p = clip * glm::dvec4(p_ws, 1.0);
+    glm::dvec4 rounding(0.0);
+    for (int column = 0; column < 4; ++column) {
+        rounding += glm::abs(clip[column]) * (column < 3 ? std::abs(p_ws[column]) : 1.0);
+    }
+    rounding *= kRoundoff;
+    return {DVec3(p) / p.w,
+            (DVec3(rounding) + glm::abs(DVec3(p)) / p.w * rounding.w) / std::abs(p.w)};
+}
+
+bool is_finite(const LightFit& fit) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(fit.clip_from_world[column][row])) return false;
+        }
+    }
+    return std::isfinite(fit.texel_m) && fit.texel_m > 0.0f;
+}
+
+class Random {
+public:
+    explicit Random(unsigned seed) : engine_(seed) {}
+    float uniform(float low, float high) {
+        return std::uniform_real_distribution<float>(low, high)(engine_);
+    }
+    Vec3 point(Vec3 low, Vec3 high) {
+        return {uniform(low.x, high.x), uniform(low.y, high.y), uniform(low.z, high.z)};
+    }
+    Vec3 direction() {
+        for (;;) {
+            const Vec3 v = point(Vec3(-1), Vec3(1));
+            const float length = glm::length(v);
+            if (length > 0.1f && length < 1.0f) return v / length;
+        }
+    }
+
+private:
+    std::mt19937 engine_;
+};
+
+struct RandomView {
+    Box3 bounds;
+    Camera camera;
+    Extent size;
+    DirectionalLight light;
+};
+
+/// Scenes of 1 cm to 1 km, one in four of them flat, seen from inside and outside.
+RandomView random_view(Random& random, unsigned index) {
+    RandomView view;
+    const float scale_m = std::pow(10.0f, random.uniform(-2.0f, 3.0f));
+    const Vec3 center = scale_m * random.point(Vec3(-3), Vec3(3));
+    Vec3 half = scale_m * random.point(Vec3(0.01f), Vec3(1));
+    if (index % 4 == 0) half[static_cast<int>(index / 4 % 3)] = 0.0f;
+    view.bounds.include(center - half);
+    view.bounds.include(center + half);
+    const Vec3 eye = center + scale_m * random.point(Vec3(-2), Vec3(2));
+    const Vec3 target = center + half * random.point(Vec3(-1), Vec3(1));
+    view.camera = look_at(eye, target, radians(random.uniform(5.0f, 150.0f)));
+    if (index % 5 == 0) {
+        view.camera.ortho_height_m = scale_m * random.uniform(0.05f, 3.0f);
+        view.camera.ortho_depth_m = scale_m * random.uniform(0.5f, 10.0f);
+    }
+    view.size = {static_cast<unsigned>(random.uniform(1, 2000)),
+                 static_cast<unsigned>(random.uniform(1, 2000))};
+    view.light.to_light_ws =
+        index % 7 == 0 ? Vec3(0, index % 2 == 0 ? 1 : -1, 0) : random.direction();
+    return view;
+}
+
+/// Is the point in the picture, by the camera's own projection?
+bool is_seen(const RandomView& view, Vec3 p_ws) {
+    const glm::dvec4 p = glm::dmat4(view.camera.clip_from_view(view.size)) *
+                         (glm::dmat4(view.camera.view_from_world) * glm::dvec4(DVec3(p_ws), 1.0));
+    return p.w > 0.0 && std::abs(p.x) <= p.w && std::abs(p.y) <= p.w && p.z >= 0.0 && p.z <= p.w;
+}
+
+/// Points of the box, its corners and faces too.
+std::vector<Vec3> points_of(const Box3& box, Random& random) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 300; ++i) {
+        Vec3 p = random.point(box.min, box.max);
+        if (i < 150) {
+            const int axis = i % 3;
+            p[axis] = i % 2 == 0 ? box.min[axis] : box.max[axis];
+        }
+        points.push_back(p);
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+        points.emplace_back((i & 1) != 0 ? box.max.x : box.min.x,
+                            (i & 2) != 0 ? box.max.y : box.min.y,
+                            (i & 4) != 0 ? box.max.z : box.min.z);
+    }
+    return points;
+}
+
+/// Points of the box that are close before the camera, if it is in the box or at it.
+void add_points_before(const RandomView& view, Random& random, std::vector<Vec3>& points) {
+    const Box3& box = view.bounds;
+    const glm::mat4 world_from_view = glm::inverse(view.camera.view_from_world);
+    for (int i = 0; i < 60; ++i) {
+        const float distance_m = view.camera.near_m * std::pow(10.0f, random.uniform(0.0f, 2.0f));
+        const Vec3 p(world_from_view * Vec4(distance_m * random.uniform(-1.0f, 1.0f),
+                                            distance_m * random.uniform(-1.0f, 1.0f), -distance_m,
+                                            1.0f));
+        if (glm::all(glm::greaterThanEqual(p, box.min)) && glm::all(glm::lessThanEqual(p, box.max)))
+            points.push_back(p);
+    }
+}
+
+constexpr unsigned kViews = 400;
+
+TEST(VisibleCorners, EncloseWhatIsSeen) {
+    Random random(1);
+    std::size_t seen = 0;
+    for (unsigned i = 0; i < kViews; ++i) {
+        const RandomView view = random_view(random, i);
+        const std::vector<DVec3> corners = visible_corners(view.camera, view.size, view.bounds);
+        std::vector<Vec3> points = points_of(view.bounds, random);
+        add_points_before(view, random, points);
+        for (const Vec3 p : points) {
+            if (!is_seen(view, p)) continue;
+            ++seen;
+            // A convex body encloses a point when it reaches as far in every direction.
+            const DVec3 direction(random.direction());
+            double reach = -1e300;
+            for (const DVec3& corner : corners)
+                reach = std::max(reach, glm::dot(direction, corner));
+            EXPECT_GE(reach, glm::dot(direction, DVec3(p))) << "view " << i;
+        }
+    }
+    EXPECT_GT(seen, 10'000u);
+}
+
+TEST(VisibleCorners, AreOfTheBoxAndOfTheFrustum) {
+    Random random(2);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const RandomView view = random_view(random, i);
+        // Boxes are taken a ten-thousandth of their size larger, so that flat ones have an inside.
+        const double grown_m = 1.1e-4 * std::max(view.bounds.diagonal(), 1e-3f);
+        for (const DVec3& corner : visible_corners(view.camera, view.size, view.bounds)) {
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_GE(corner[axis], view.bounds.min[axis] - grown_m);
+                EXPECT_LE(corner[axis], view.bounds.max[axis] + grown_m);
+            }
+            const glm::dvec4 p =
+                glm::dmat4(view.camera.clip_from_view(view.size)) *
+                (glm::dmat4(view.camera.view_from_world) * glm::dvec4(corner, 1.0));
+            const double rounding = 1e-6 * std::abs(p.w);  // of the camera's scale, a float
+            EXPECT_LE(std::abs(p.x), p.w + rounding) << "view " << i;
+            EXPECT_LE(std::abs(p.y), p.w + rounding) << "view " << i;
+        }
+    }
+}
+
+TEST(VisibleCorners, AreNoneWhereNothingIsSeen) {
+    Box3 box;
+    box.include(Vec3(-1));
+    box.include(Vec3(1));
+    EXPECT_TRUE(visible_corners(look_at({0, 0, 5}, {0, 0, 9}), {64, 64}, box).empty());
+    EXPECT_TRUE(
+        visible_corners(look_at({0, 0, 5}, {9, 0, 5}, radians(20.0f)), {64, 64}, box).empty());
+    EXPECT_TRUE(visible_corners(look_at({0, 0, 5}, {0, 0, 0}), {64, 64}, Box3()).empty());
+    EXPECT_FALSE(visible_corners(look_at({0, 0, 5}, {0, 0, 0}), {64, 64}, box).empty());
+}
+
+TEST(FitDirectional, HoldsWhatIsSeenWithinItsMargin) {
+    Random random(3);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const RandomView view = random_view(random, i);
+        const LightFit fit = fit_directional(view.light, view.camera, view.size, view.bounds,
+                                             kMapSize, kMarginTexels);
+        ASSERT_TRUE(is_finite(fit)) << "view " << i;
+        std::vector<Vec3> points = points_of(view.bounds, random);
+        add_points_before(view, random, points);
+        for (const Vec3 p : points) {
+            if (!is_seen(view, p)) continue;
+            const Projected at = project(fit, DVec3(p));
+            EXPECT_LE(std::abs(at.ndc.x), kInnerNdc + at.rounding.x) << "view " << i;
+            EXPECT_LE(std::abs(at.ndc.y), kInnerNdc + at.rounding.y) << "view " << i;
+        }
+    }
+}
+
+TEST(FitDirectional, IsNoLargerThanItMustBe) {
+    Random random(4);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const RandomView view = random_view(random, i);
+        const LightFit fit = fit_directional(view.light, view.camera, view.size, view.bounds,
+                                             kMapSize, kMarginTexels);
+        double reach = 0.0, rounding = 0.0;
+        const std::vector<DVec3> corners = visible_corners(view.camera, view.size, view.bounds);
+        for (const DVec3& corner : corners) {
+            const Projected at = project(fit, corner);
+            reach = std::max({reach, std::abs(at.ndc.x), std::abs(at.ndc.y)});
+            rounding = std::max({rounding, at.rounding.x, at.rounding.y});
+        }
+        if (!corners.empty()) {
+            EXPECT_NEAR(reach, kInnerNdc, 2.0 * rounding) << "view " << i;
+        }
+    }
+}
+
+TEST(FitDirectional, HasEveryCasterBetweenItsPlanesNearestFirst) {
+    Random random(5);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const RandomView view = random_view(random, i);
+        const LightFit fit = fit_directional(view.light, view.camera, view.size, view.bounds,
+                                             kMapSize, kMarginTexels);
+        for (const Vec3 p : points_of(view.bounds, random)) {
+            const Projected at = project(fit, DVec3(p));
+            EXPECT_GE(at.ndc.z, -at.rounding.z) << "view " << i;
+            EXPECT_LE(at.ndc.z, 1.0 + at.rounding.z) << "view " << i;
+            const double step_m = 0.1 * view.bounds.diagonal();
+            const Projected nearer =
+                project(fit, DVec3(p) + step_m * DVec3(view.light.to_light_ws));
+            EXPECT_GT(nearer.ndc.z, at.ndc.z) << "view " << i;
+            // Towards the light is straight down the map.
+            EXPECT_NEAR(nearer.ndc.x, at.ndc.x, nearer.rounding.x + at.rounding.x);
+            EXPECT_NEAR(nearer.ndc.y, at.ndc.y, nearer.rounding.y + at.rounding.y);
+        }
+    }
+}
+
+/// How many texels the map's image of p moves when p moves by `step_ws`.
+double texels_moved(const LightFit& fit, DVec3 p_ws, DVec3 step_ws) {
+    const DVec3 moved = project(fit, p_ws + step_ws).ndc - project(fit, p_ws).ndc;
+    return 0.5 * kMapSize * std::hypot(moved.x, moved.y);
+}
+
+TEST(FitDirectional, KnowsTheSizeOfItsTexels) {
+    Random random(6);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const RandomView view = random_view(random, i);
+        const LightFit fit = fit_directional(view.light, view.camera, view.size, view.bounds,
+                                             kMapSize, kMarginTexels);
+        const Vec3 p = random.point(view.bounds.min, view.bounds.max);
+        const Vec3 across = normalize(glm::cross(view.light.to_light_ws, random.direction()));
+        const float texel_m = fit.texel_size_m(p);
+        // A hundred texels; the matrix and the direction are in float.
+        EXPECT_NEAR(texels_moved(fit, DVec3(p), 100.0 * texel_m * DVec3(across)), 100.0, 1e-3);
+    }
+}
+
+TEST(FitDirectional, CopesWithBoundsOfNoSizeAndWithNothingSeen) {
+    Box3 point;
+    point.include({1, 2, 3});
+    Box3 line = point;
+    line.include({1, 2, 8});
+    Box3 square = line;
+    square.include({5, 2, 3});
+    const DirectionalLight light{.to_light_ws = {0, 1, 0}};
+    for (const Box3& box : {Box3(), point, line, square}) {
+        for (const Vec3 target : {Vec3(1, 2, 3), Vec3(1, 30, 9)}) {
+            const Camera camera = look_at({3, 4, 9}, target, radians(30.0f));
+            const LightFit fit =
+                fit_directional(light, camera, {16, 9}, box, kMapSize, kMarginTexels);
+            ASSERT_TRUE(is_finite(fit));
+            if (box.empty()) continue;
+            for (const Vec3 p : {box.min, box.max}) {
+                const Projected at = project(fit, DVec3(p));
+                EXPECT_GE(at.ndc.z, -at.rounding.z);
+                EXPECT_LE(at.ndc.z, 1.0 + at.rounding.z);
+            }
+        }
+    }
+}
+
+TEST(FitDirectional, CopesWithMapsOfHardlyMoreThanTheirMargin) {
+    Box3 box;
+    box.include(Vec3(-1));
+    box.include(Vec3(1));
+    const Camera camera = look_at({3, 4, 9}, {0, 0, 0});
+    for (const unsigned map_size : {1u, 6u, 7u}) {
+        EXPECT_TRUE(is_finite(
+            fit_directional({.to_light_ws = {0, 1, 0}}, camera, {16, 9}, box, map_size, 3.0f)));
+    }
+}
+
+struct RandomSpot {
+    SpotLight light;
+    Box3 bounds;
+};
+
+RandomSpot random_spot(Random& random) {
+    const float scale_m = std::pow(10.0f, random.uniform(-1.0f, 2.0f));
+    RandomSpot spot;
+    spot.light.position_ws = scale_m * random.point(Vec3(-2), Vec3(2));
+    spot.light.direction_ws = random.direction();
+    spot.light.outer_angle_rad = radians(random.uniform(1.0f, 80.0f));
+    spot.bounds.include(Vec3(-scale_m));
+    spot.bounds.include(Vec3(scale_m));
+    return spot;
+}
+
+TEST(FitSpot, HoldsItsConeWithinItsMargin) {
+    Random random(7);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const auto [light, bounds] = random_spot(random);
+        const LightFit fit = fit_spot(light, bounds, kMapSize, kMarginTexels);
+        ASSERT_TRUE(is_finite(fit));
+        double reach = 0.0;
+        const Vec3 across = normalize(glm::cross(light.direction_ws, random.direction()));
+        const Vec3 other = glm::cross(light.direction_ws, across);
+        constexpr int kRimPoints = 360;
+        for (int k = 0; k < kRimPoints; ++k) {
+            const float turn = 2.0f * kPi * static_cast<float>(k) / kRimPoints;
+            const Vec3 radial = std::cos(turn) * across + std::sin(turn) * other;
+            const Vec3 rim =
+                light.position_ws +
+                bounds.diagonal() * (std::cos(light.outer_angle_rad) * light.direction_ws +
+                                     std::sin(light.outer_angle_rad) * radial);
+            const Projected at = project(fit, DVec3(rim));
+            reach = std::max({reach, std::abs(at.ndc.x), std::abs(at.ndc.y)});
+        }
+        // The rim touches the margin; it is sampled each degree, and computed in float.
+        EXPECT_NEAR(reach, kInnerNdc, 1e-4);
+    }
+}
+
+TEST(FitSpot, HasReversedDepthWithoutAFarPlane) {
+    Random random(8);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const auto [light, bounds] = random_spot(random);
+        const LightFit fit = fit_spot(light, bounds, kMapSize, kMarginTexels);
+        double before = 1.0;
+        for (const double fraction : {1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3}) {
+            const DVec3 p =
+                DVec3(light.position_ws) + fraction * bounds.diagonal() * DVec3(light.direction_ws);
+            const double depth = project(fit, p).ndc.z;
+            EXPECT_LT(depth, before);
+            EXPECT_GT(depth, 0.0);
+            before = depth;
+        }
+    }
+}
+
+TEST(FitSpot, KnowsTheSizeOfItsTexels) {
+    Random random(9);
+    for (unsigned i = 0; i < kViews; ++i) {
+        const auto [light, bounds] = random_spot(random);
+        const LightFit fit = fit_spot(light, bounds, kMapSize, kMarginTexels);
+        const Vec3 across = normalize(glm::cross(light.direction_ws, random.direction()));
+        const float distance_m = bounds.diagonal() * random.uniform(0.1f, 2.0f);
+        const Vec3 p = light.position_ws + distance_m * (light.direction_ws + 0.3f * across);
+        const Vec3 aside = normalize(glm::cross(light.direction_ws, random.direction()));
+        const double texel_m = fit.texel_size_m(p);
+        EXPECT_NEAR(texels_moved(fit, DVec3(p), 10.0 * texel_m * DVec3(aside)), 10.0, 1e-2);
+    }
+    SpotLight light;
+    EXPECT_EQ(fit_spot(light, {}, kMapSize, 0).texel_size_m({0, 5, 0}), 0.0f);  // behind it
+}
+
+TEST(FitSpot, RefusesConesThatNoMapHolds) {
+    SpotLight light;
+    light.outer_angle_rad = radians(80.0f);
+    EXPECT_NO_THROW(fit_spot(light, {}, kMapSize, kMarginTexels));
+    light.outer_angle_rad = radians(81.0f);
+    try {
+        fit_spot(light, {}, kMapSize, kMarginTexels);
+        FAIL() << "a cone of 162° was fitted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("160"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace gnomon
