@@ -239,7 +239,7 @@ class Output(CliTest):
         (self.folder / "thesis.txt").write_text("years of work")
         self.assert_fails(INPUT, ["report"], "compare", "cube", "-o", self.folder)
         (self.folder / "file").touch()
-        self.assert_fails(INPUT, ["-o", "file"], "compare", "cube", "-o", self.folder / "file")
+        self.assert_fails(INPUT, ["file"], "compare", "cube", "-o", self.folder / "file")
         self.assertEqual(self.files(), ["file", "thesis.txt"])
 
     def test_full_standard_output(self):

@@ -164,13 +164,31 @@ PAGE = """\
 
 TODO What it does, for whom, in two or three sentences.
 
-## Source
+| | |
+|---|---|
+| lights | directional |
+| penumbra | none |
+| alpha masks | honoured |
 
-TODO authors, *title*, where, year (`key` in docs/references.bib), and how this differs, with the reasons.
+## How it works
 
-## Limits
+TODO The algorithm, with the formulas that matter.
 
-TODO Which lights; what it gets wrong, and how that looks; what it costs.
+## Sources
+
+TODO One line each, those of TechniqueInfo::source first: - `key`: authors, *title*, where, year.
+
+TODO Departures, with the reasons.
+
+## Parameters
+
+<!-- parameters -->
+None.
+<!-- /parameters -->
+
+## What it does well, and its limits
+
+TODO What it gets wrong, and how that looks; what it costs.
 """
 
 

@@ -13,8 +13,7 @@ import sys
 CASE = re.compile(r"^\[  SKIPPED \] (\S+) \(\d+ ms\)$")  # closes the case; the reason stands above
 START = re.compile(r"^\[ RUN      \] ")
 PLACE = re.compile(r"^\S+:\d+: Skipped$")
-SCRIPT = re.compile(r"(\S+) \(\S+\) \.\.\. skipped ['\"](.*)['\"]$")  # unittest -v
-WHOLE = re.compile(r"^Test Skipped")
+SCRIPT = re.compile(r"(.*?)(?: \(\S+\))? \.\.\. skipped ['\"](.*)['\"]$")  # unittest -v
 
 
 def skipped(log):
@@ -31,8 +30,6 @@ def skipped(log):
             case_lines = []
         elif match := SCRIPT.match(line):
             yield f"{test}.{match.group(1)}", match.group(2)
-        elif WHOLE.match(line):
-            yield test, "the whole program"
         else:
             case_lines.append(line)
 

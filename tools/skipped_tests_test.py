@@ -6,8 +6,8 @@ import unittest
 import skipped_tests
 
 LOG = """\
-1/3 Testing: scene
-1/3 Test: scene
+1/2 Testing: scene
+1/2 Test: scene
 Command: "/build/scene_test"
 Output:
 ----------------------------------------------------------
@@ -30,16 +30,14 @@ some output
 [  SKIPPED ] Scenes.Bare
 <end of output>
 Test Passed.
-2/3 Test: bad_inputs
+2/2 Test: bad_inputs
 Output:
 test_all (__main__.BadInputs.test_all) ... skipped 'GNOMON_SCENES is not set'
+test_far (__main__.BadInputs.test_far)
+Files far from here. ... skipped 'no folder'
 test_none (__main__.BadInputs.test_none) ... ok
 <end of output>
 Test Passed.
-3/3 Test: viewer
-Output:
-<end of output>
-Test Skipped.
 """
 
 
@@ -49,7 +47,7 @@ class SkippedTests(unittest.TestCase):
             ("Scenes.LoadAll", "GNOMON_SCENES is not set"),
             ("Scenes.Bare", ""),
             ("bad_inputs.test_all", "GNOMON_SCENES is not set"),
-            ("viewer", "the whole program"),
+            ("bad_inputs.Files far from here.", "no folder"),
         ])
 
     def test_nothing_skipped_is_an_empty_list(self):

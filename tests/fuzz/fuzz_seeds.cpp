@@ -76,10 +76,10 @@ constexpr const char* kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[
 "animations":[{"samplers":[{"input":8,"output":9,"interpolation":"CUBICSPLINE"},{"input":8,"output":8}],
 "channels":[{"sampler":0,"target":{"node":2,"path":"rotation"}},{"sampler":1,"target":{"node":2,"path":"weights"}}]}],
 "accessors":[{"bufferView":0,"componentType":5121,"normalized":true,"count":4,"type":"VEC3"},
-{"bufferView":1,"componentType":5121,"count":4,"type":"SCALAR"},
+{"bufferView":3,"componentType":5121,"count":4,"type":"SCALAR"},
 {"bufferView":0,"componentType":5123,"normalized":true,"count":4,"type":"VEC2"},
 {"bufferView":0,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"},
-{"bufferView":0,"componentType":5121,"count":4,"type":"VEC4"},
+{"componentType":5121,"count":4,"type":"VEC4"},
 {"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,
 "componentType":5121},"values":{"bufferView":1,"byteOffset":8}}},
 {"bufferView":0,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"},
@@ -87,8 +87,9 @@ constexpr const char* kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[
 {"bufferView":2,"componentType":5126,"count":2,"type":"SCALAR"},
 {"bufferView":1,"byteOffset":200,"componentType":5126,"count":6,"type":"VEC4"}],
 "bufferViews":[{"buffer":0,"byteLength":128,"byteStride":16},{"buffer":0,"byteLength":512},
-{"buffer":1,"byteLength":8}],
-"buffers":[{"byteLength":4096,"uri":"a.bin"},{"byteLength":8,"uri":"data:;base64,AAAAAAAAgD8="}]})";
+{"buffer":1,"byteLength":8},{"buffer":2,"byteLength":4}],
+"buffers":[{"byteLength":4096,"uri":"a.bin"},{"byteLength":8,"uri":"data:;base64,AAAAAAAAgD8="},
+{"byteLength":4,"uri":"data:;base64,AAECAw=="}]})";
 
 constexpr const char* kObj =
     "mtllib a.mtl\no thing\ng one two\nv 84616.5 447423.25 1e1\nv 84617 447423 2\nv 84617 447424 "

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Makes docs/images, the pictures of the README and of the techniques' pages, by running the program: crops,
+side by side. Run it again, and look at the pictures, when a technique's pictures change. Needs Pillow.
+
+    tools/page_pictures.py [GNOMON]       the built program; else $GNOMON_CLI, else build/release/apps/cli/gnomon
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+CLI = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else
+                   os.environ.get("GNOMON_CLI") or ROOT / "build/release/apps/cli/gnomon")
+GAP_PX = 6
+COLOURS = 256  # of a picture's palette, so that a file stays small
+
+RECT = "--light rect:center=1.5,3,1,u=0.5,0,0,v=0,0,0.5"
+MAP = "--technique shadow_map"
+NO_BIAS = "--shadow_map.bias_constant 0 --shadow_map.bias_slope 0 --shadow_map.normal_offset 0"
+
+# Picture: size to render, crop (left, top, right, bottom) in px, panels in a row, and what each panel shows.
+PICTURES = {
+    "local_illumination": ("640x360", (0, 40, 640, 330), 2, [
+        "courtyard --technique local_illumination", "courtyard"]),
+    "ray_traced-samples": ("960x540", (250, 130, 650, 380), 3, [
+        f"cube {RECT} --technique ray_traced --ray_traced.samples {samples}" for samples in (1, 16, 256)]),
+    "shadow_map-parameters": ("1920x1080", (1400, 560, 1880, 860), 2, [
+        f"courtyard {MAP} {NO_BIAS}", f"courtyard {MAP}",
+        f"courtyard {MAP} --shadow_map.bias_constant 30", f"courtyard {MAP} --shadow_map.map_size 256"]),
+    "shadow_map-far": ("1280x720", (440, 300, 760, 460), 2, ["field-small", f"field-small {MAP}"]),
+    "shadow_volumes-alpha": ("1280x720", (520, 380, 920, 560), 3, [
+        "courtyard", "courtyard --technique shadow_volumes", "courtyard --ignore-alpha"]),
+    "shadow_volumes-hard": ("1280x720", (0, 430, 480, 670), 2, [
+        "gas-station", "gas-station --technique shadow_volumes"]),
+}
+
+# Of a report: where the two techniques are beside the truth.
+REPORT_SIZE, REPORT_CROP = "800x450", (320, 6, 600, 344)
+REPORT_PANELS = ("truth-picture", "shadow_map-picture", "shadow_volumes-picture",
+                 "shadow_map-difference", "shadow_volumes-difference")
+
+
+def gnomon(*words):
+    subprocess.run([CLI, *words, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+
+
+def save(name, panels, columns):
+    """Panels of one size in rows, white between them."""
+    width, height = panels[0].size
+    rows = -(-len(panels) // columns)
+    sheet = Image.new("RGB", (columns * (width + GAP_PX) - GAP_PX, rows * (height + GAP_PX) - GAP_PX), "white")
+    for i, panel in enumerate(panels):
+        sheet.paste(panel, (i % columns * (width + GAP_PX), i // columns * (height + GAP_PX)))
+    path = ROOT / "docs" / "images" / f"{name}.png"
+    sheet.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(f"{path.relative_to(ROOT)}: {sheet.width}x{sheet.height}, {path.stat().st_size // 1024} KiB")
+
+
+def cropped(path, crop):
+    with Image.open(path) as image:
+        return image.convert("RGB").crop(crop)
+
+
+def main():
+    (ROOT / "docs" / "images").mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        frame = f"{folder}/frame.png"
+        for name, (size, crop, columns, commands) in PICTURES.items():
+            panels = []
+            for command in commands:
+                gnomon("render", *command.split(), "-o", frame, "--size", size)
+                panels.append(cropped(frame, crop))
+            save(name, panels, columns)
+        gnomon("compare", "courtyard", "-o", f"{folder}/report", "--size", REPORT_SIZE,
+               "--techniques", "shadow_map,shadow_volumes", "--frames", "1")
+        save("compare", [cropped(f"{folder}/report/images/sun/{panel}.png", REPORT_CROP)
+                         for panel in REPORT_PANELS], len(REPORT_PANELS))
+
+
+if __name__ == "__main__":
+    main()
