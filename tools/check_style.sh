@@ -24,7 +24,7 @@ tidy() {
     local build="$1" headers="$2" file="$3" key found
     key="$(echo "$headers" "$file" | cat - "$file" | sha256sum | cut -c1-40)"
     [ ! -e ".cache/clang-tidy/$key" ] || return 0
-    if ! found="$(clang-tidy --quiet -p "$build" "$file" 2>&1)"; then
+    if ! found="$(clang-tidy --quiet --extra-arg=-Wno-unknown-warning-option -p "$build" "$file" 2>&1)"; then
         echo "$found"
         return 1
     fi

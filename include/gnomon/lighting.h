@@ -14,8 +14,7 @@ enum class Compose {
 };
 
 struct LightingOptions {
-    Vec3 ambient{
-        -1.0f};  ///< radiance from everywhere; negative = a tenth of the lights' mean effect
+    Vec3 ambient{-1.0f};    ///< radiance from everywhere; negative = 12 % of the mean light
     float exposure = 0.0f;  ///< factor on radiance before sRGB; 0 = bright parts of the fully lit
                             ///< picture become white
     Compose compose = Compose::additive;

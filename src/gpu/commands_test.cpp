@@ -11,7 +11,7 @@ namespace {
 
 class CommandsTest : public DeviceTest {};
 
-TEST_F(CommandsTest, ClearTheirTargetsUnlessToldToKeepThem) {
+TEST_F(CommandsTest, ClearTheTargetsThatTheyAreToldTo) {
     constexpr Extent kSize{8, 8};
     Image color(device(),
                 {.size = kSize,
@@ -26,7 +26,7 @@ TEST_F(CommandsTest, ClearTheirTargetsUnlessToldToKeepThem) {
     for (const bool clear : {true, false}) {
         commands.use(color, Use::color_target);
         commands.use(depth, Use::depth_target);
-        // The second clear values must have no effect.
+        // The second clear value must have no effect.
         commands.begin_drawing({.colors = {&color},
                                 .depth = &depth,
                                 .size = kSize,

@@ -64,6 +64,24 @@ VkPipelineDepthStencilStateCreateInfo depth_stencil(const GraphicsPipelineInfo& 
             .back = back};
 }
 
+// What all graphics pipelines have alike.
+constexpr VkPipelineInputAssemblyStateCreateInfo kAssembly{
+    .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+    .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+constexpr VkPipelineViewportStateCreateInfo kViewport{
+    .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+    .viewportCount = 1,
+    .scissorCount = 1};
+constexpr VkPipelineMultisampleStateCreateInfo kMultisample{
+    .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+    .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+constexpr std::array kDynamicStates = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                       VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
+constexpr VkPipelineDynamicStateCreateInfo kDynamic{
+    .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+    .dynamicStateCount = static_cast<std::uint32_t>(kDynamicStates.size()),
+    .pDynamicStates = kDynamicStates.data()};
+
 }  // namespace
 
 void Pipeline::make_layout() {
@@ -133,21 +151,11 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
         .pVertexBindingDescriptions = &binding,
         .vertexAttributeDescriptionCount = static_cast<std::uint32_t>(info.attributes.size()),
         .pVertexAttributeDescriptions = info.attributes.data()};
-    const VkPipelineInputAssemblyStateCreateInfo assembly{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    const VkPipelineViewportStateCreateInfo viewport{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-        .viewportCount = 1,
-        .scissorCount = 1};
     const VkPipelineRasterizationStateCreateInfo raster{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .depthClampEnable = info.depth_clamp ? VK_TRUE : VK_FALSE,
         .polygonMode = VK_POLYGON_MODE_FILL,
         .lineWidth = 1.0f};
-    const VkPipelineMultisampleStateCreateInfo multisample{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
     const VkPipelineDepthStencilStateCreateInfo depth = depth_stencil(info);
     const std::vector<VkPipelineColorBlendAttachmentState> attachments(info.color_formats.size(),
                                                                        {.colorWriteMask = 0xf});
@@ -155,12 +163,6 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
         .attachmentCount = static_cast<std::uint32_t>(attachments.size()),
         .pAttachments = attachments.data()};
-    const std::array dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
-                                       VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
-    const VkPipelineDynamicStateCreateInfo dynamic{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-        .dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size()),
-        .pDynamicStates = dynamic_states.data()};
     const bool stencil = info.depth_format == VK_FORMAT_D32_SFLOAT_S8_UINT;
     const VkPipelineRenderingCreateInfo rendering{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
@@ -174,13 +176,13 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
         .stageCount = has_fragment ? 2u : 1u,
         .pStages = stages.data(),
         .pVertexInputState = &input,
-        .pInputAssemblyState = &assembly,
-        .pViewportState = &viewport,
+        .pInputAssemblyState = &kAssembly,
+        .pViewportState = &kViewport,
         .pRasterizationState = &raster,
-        .pMultisampleState = &multisample,
+        .pMultisampleState = &kMultisample,
         .pDepthStencilState = &depth,
         .pColorBlendState = &blend,
-        .pDynamicState = &dynamic,
+        .pDynamicState = &kDynamic,
         .layout = layout_};
     check(
         vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &create, nullptr, &pipeline_),

@@ -154,7 +154,7 @@ std::int64_t least_chunks(const Imf::Header& header, std::int64_t width, std::in
 void check_claim(const Imf::Header& header, std::uint64_t file_bytes, int channels,
                  std::string_view name) {
     constexpr std::uint64_t kBytesPerChunk = 8;  // its offset in the table, if nothing else
-    const IMATH_NAMESPACE::Box2i window = header.dataWindow();
+    const IMATH_NAMESPACE::Box2i& window = header.dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     if (width < 1 || height < 1 || width > Image::kMaxSide_px || height > Image::kMaxSide_px ||
@@ -177,7 +177,7 @@ Image read_pixels(std::span<const std::uint8_t> bytes, std::string_view name) {
     const int channels = channels_of(header.channels(), name);
     check_claim(header, bytes.size(), channels, name);
     Imf::InputFile file(stream, kNoThreads);
-    const IMATH_NAMESPACE::Box2i window = header.dataWindow();
+    const IMATH_NAMESPACE::Box2i& window = header.dataWindow();
     const Extent size{static_cast<unsigned>(window.max.x - window.min.x + 1),
                       static_cast<unsigned>(window.max.y - window.min.y + 1)};
     Image image(size, channels);

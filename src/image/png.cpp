@@ -203,7 +203,7 @@ namespace {
 std::uint8_t quantize(float value) {
     constexpr float kSteps = 255.0f;
     const float clamped = value > 0.0f ? std::min(value, 1.0f) : 0.0f;
-    return static_cast<std::uint8_t>(clamped * kSteps + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(clamped * kSteps));
 }
 
 }  // namespace

@@ -87,8 +87,9 @@ public:
 private:
     const json& find(const std::string& name) const {
         if (name == ".") return *stack_.back();
-        for (auto view = stack_.rbegin(); view != stack_.rend(); ++view) {
-            if ((*view)->is_object() && (*view)->contains(name)) return (*view)->at(name);
+        for (std::size_t depth = stack_.size(); depth-- > 0;) {
+            const json& view = *stack_[depth];
+            if (view.is_object() && view.contains(name)) return view.at(name);
         }
         fail("nothing is named", name);
     }

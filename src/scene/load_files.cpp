@@ -93,7 +93,7 @@ fs::path SceneFolder::resolve(std::string_view name) const {
         fail_input("\"{}\": lies outside the scene's folder, which is all that is read", shown);
     }
     std::error_code error;
-    const fs::path path = fs::weakly_canonical(root_ / relative, error);
+    fs::path path = fs::weakly_canonical(root_ / relative, error);
     if (error) fail_input("\"{}\": {}", shown, error.message());
     if (!is_inside(path, root_)) {
         fail_input("\"{}\": is a link that leads out of the scene's folder", shown);

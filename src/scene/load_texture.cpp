@@ -56,7 +56,7 @@ image::Rgba8 scaled(const image::Rgba8& source, Extent size) {
                 const float bottom =
                     std::lerp(at(u.first, v.second, c), at(u.second, v.second, c), u.weight);
                 result.rgba[out++] =
-                    static_cast<std::uint8_t>(std::lerp(top, bottom, v.weight) + 0.5f);
+                    static_cast<std::uint8_t>(std::lround(std::lerp(top, bottom, v.weight)));
             }
         }
     }

@@ -115,6 +115,35 @@ TEST_F(ShadowMapTest, HasNoAcneOnAPlaneUnderASpot) {
     }
 }
 
+TEST_F(ShadowMapTest, HasNoStepsWithinAFilteredEdge) {
+    // The corner of a board over a plane, seen from between the two by a parallel camera.
+    SceneData data =
+        raster::scene_data({raster::wall(Vec3(0), 20), raster::wall({5.02f, 5.03f, 1}, 10)});
+    Frame frame{.scene = Scene(std::move(data)),
+                .camera = look_at({0, 0, 0.5f}, {0, 0, 0}),
+                .light = sun_at(0.0f),
+                .size = {64, 64}};
+    frame.camera.ortho_height_m = 1.0f;
+    frame.camera.ortho_depth_m = 1.0f;
+    // What a filter's weights change by over one texel.
+    const std::vector<std::pair<std::string, float>> slopes = {{"hardware_2x2", 1.0f},
+                                                               {"box_4x4", 1.0f / 3.0f}};
+    for (const auto& [filter, slope] : slopes) {
+        const Visibility visibility = render(frame, {{"filter", filter}, {"map_size", 20}});
+        EXPECT_EQ(range(visibility), std::pair(0.0f, 1.0f));
+        const float texels_per_pixel = 1.0f / 64.0f / visibility.texel_size_m().at(5, 5);
+        ASSERT_LT(texels_per_pixel, 0.5f);
+        const float most = 1.001f * slope * texels_per_pixel;
+        const Image& values = visibility.image();
+        for (unsigned y = 0; y + 1 < 64; ++y) {
+            for (unsigned x = 0; x + 1 < 64; ++x) {
+                EXPECT_LE(std::abs(values.at(x + 1, y) - values.at(x, y)), most) << filter;
+                EXPECT_LE(std::abs(values.at(x, y + 1) - values.at(x, y)), most) << filter;
+            }
+        }
+    }
+}
+
 TEST_F(ShadowMapTest, TellsTheSizeAndReachOfItsTexels) {
     const Frame frame = plane_frame(sun_at(30.0f));
     float previous_radius = 0.0f;
