@@ -267,10 +267,14 @@ void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t by
     vkCmdCopyBuffer(handle_, source.handle(), target.handle(), 1, &region);
 }
 
-void Commands::update(Buffer& target, std::span<const std::byte> bytes) {
+void Commands::update(Buffer& target, std::span<const std::byte> bytes, Use next) {
+    constexpr std::size_t kMostAtOnce_bytes = 65536;  // of vkCmdUpdateBuffer
     use(target, Use::copy_target);
-    vkCmdUpdateBuffer(handle_, target.handle(), 0, bytes.size(), bytes.data());
-    use(target, Use::storage_read);
+    for (std::size_t at = 0; at < bytes.size(); at += kMostAtOnce_bytes) {
+        const std::size_t count = std::min(kMostAtOnce_bytes, bytes.size() - at);
+        vkCmdUpdateBuffer(handle_, target.handle(), at, count, &bytes[at]);
+    }
+    use(target, next);
 }
 
 namespace {

@@ -93,9 +93,8 @@ public:
     /// Enough groups of group_size x group_size for `size`.
     void dispatch(Extent size, unsigned group_size);
 
-    /// At most 64 KiB, a multiple of 4, taken into the command buffer; then ready to be read by
-    /// shaders.
-    void update(Buffer& target, std::span<const std::byte> bytes);
+    /// Bytes, a multiple of 4, taken into the command buffer; then ready for `next`.
+    void update(Buffer& target, std::span<const std::byte> bytes, Use next = Use::storage_read);
     template <typename T>
     void update(Buffer& target, const T& value) {
         update(target, std::as_bytes(std::span(&value, 1)));

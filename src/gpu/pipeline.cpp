@@ -143,12 +143,15 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
     const ShaderModule fragment(device, has_fragment ? info.fragment : info.vertex);
     const std::array stages = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT),
                                fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
-    const VkVertexInputBindingDescription binding{0, info.vertex_stride,
-                                                  VK_VERTEX_INPUT_RATE_VERTEX};
+    const std::array<VkVertexInputBindingDescription, 2> bindings{
+        {{0, info.vertex_stride, VK_VERTEX_INPUT_RATE_VERTEX},
+         {1, info.instance_stride, VK_VERTEX_INPUT_RATE_INSTANCE}}};
+    const std::uint32_t per_vertex = info.vertex_stride > 0 ? 1 : 0;
+    const std::uint32_t per_instance = info.instance_stride > 0 ? 1 : 0;
     const VkPipelineVertexInputStateCreateInfo input{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-        .vertexBindingDescriptionCount = info.vertex_stride > 0 ? 1u : 0u,
-        .pVertexBindingDescriptions = &binding,
+        .vertexBindingDescriptionCount = per_vertex + per_instance,
+        .pVertexBindingDescriptions = bindings.data(),
         .vertexAttributeDescriptionCount = static_cast<std::uint32_t>(info.attributes.size()),
         .pVertexAttributeDescriptions = info.attributes.data()};
     const VkPipelineRasterizationStateCreateInfo raster{

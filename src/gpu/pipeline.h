@@ -28,7 +28,8 @@ struct GraphicsPipelineInfo {
     std::vector<VkFormat> color_formats;
     VkFormat depth_format = VK_FORMAT_UNDEFINED;
     std::vector<VkVertexInputAttributeDescription> attributes;
-    std::uint32_t vertex_stride = 0;
+    std::uint32_t vertex_stride = 0;    ///< of vertex buffer 0, one element a vertex
+    std::uint32_t instance_stride = 0;  ///< of vertex buffer 1, one element an instance
     bool depth_write = true;
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  ///< reversed Z
     bool depth_clamp = false;

@@ -37,6 +37,10 @@ struct ScenePush {
     uint material;
 };
 
+struct CasterPush {
+    uint material;
+};
+
 struct NormalPush {
     vec3 eye_ws;        // perspective
     float perspective;  // 1, or 0: `eye_ws` is the direction towards the viewer

@@ -4,12 +4,12 @@
 
 #include "raster/material.glsl"
 
-layout(location = 1) in vec2 texcoord;
-layout(location = 2) in vec4 color;
+layout(location = 0) in vec2 texcoord;
+layout(location = 1) in vec4 color;
 
-layout(set = 0, binding = 2, scalar) readonly buffer Materials { SceneMaterial materials[]; };
-layout(set = 0, binding = 3) uniform sampler2D base_color;
-layout(push_constant, scalar) uniform Push { ScenePush push; };
+layout(set = 0, binding = 1, scalar) readonly buffer Materials { SceneMaterial materials[]; };
+layout(set = 0, binding = 2) uniform sampler2D base_color;
+layout(push_constant, scalar) uniform Push { CasterPush push; };
 
 void main() {
     SceneMaterial material = materials[push.material];

@@ -139,7 +139,7 @@ private:
     }
 
     std::uint64_t memory_bytes() const override {
-        return map_.image().memory_bytes() + frame_.memory_bytes();
+        return map_.memory_bytes() + frame_.memory_bytes();
     }
 
     Options options_;
