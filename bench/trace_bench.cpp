@@ -107,17 +107,19 @@ struct BareScene {
     RTCDevice device = rtcNewDevice("max_isa=avx2");
     RTCScene top = nullptr;
 
-    BareScene(const Scene& scene, RTCSceneFlags flags) {
+    /// `flat`: a copy of each mesh for each instance.
+    BareScene(const Scene& scene, RTCSceneFlags flags, bool flat) {
         std::vector<unsigned> uses(scene.meshes().size());
-        for (const Instance& instance : scene.instances())
-            ++uses[instance.mesh];
+        for (const Instance& instance : scene.instances()) {
+            if (!flat) ++uses[instance.mesh];
+        }
         std::vector<RTCScene> mesh_scenes(scene.meshes().size());
         top = rtcNewScene(device);
         rtcSetSceneFlags(top, flags);
         for (const Instance& instance : scene.instances()) {
             const Mesh& mesh = scene.meshes()[instance.mesh];
             if (mesh.triangles.empty()) continue;
-            if (uses[instance.mesh] == 1) {
+            if (uses[instance.mesh] <= 1) {
                 attach(top, triangles(mesh, instance.world_from_local));
                 continue;
             }
@@ -256,6 +258,34 @@ void loop_stream(RTCScene scene, RTCIntersectContext& context, const Rays& rays,
     }
 }
 
+void loop_lane_stream(RTCScene scene, RTCIntersectContext& context, const Rays& rays,
+                      std::size_t first, std::size_t last, Blocked& blocked) {
+    constexpr unsigned kStream = 256;
+    struct Lanes {
+        float org_x[kStream], org_y[kStream], org_z[kStream], tnear[kStream];
+        float dir_x[kStream], dir_y[kStream], dir_z[kStream], time[kStream], tfar[kStream];
+        unsigned mask[kStream], id[kStream], flags[kStream];
+    };
+    alignas(64) Lanes l;
+    const RTCRayNp pointers{l.org_x, l.org_y, l.org_z, l.tnear, l.dir_x, l.dir_y,
+                            l.dir_z, l.time,  l.tfar,  l.mask,  l.id,    l.flags};
+    for (unsigned k = 0; k < kStream; ++k)
+        fill(l, k, rays, 0);
+    for (std::size_t i = first; i < last; i += kStream) {
+        const auto count = static_cast<unsigned>(std::min<std::size_t>(kStream, last - i));
+        for (unsigned k = 0; k < count; ++k) {
+            const Vec3 origin = rays.origins[i + k];
+            l.org_x[k] = origin.x;
+            l.org_y[k] = origin.y;
+            l.org_z[k] = origin.z;
+            l.tfar[k] = std::numeric_limits<float>::infinity();
+        }
+        rtcOccludedNp(scene, &context, &pointers, count);
+        for (unsigned k = 0; k < count; ++k)
+            blocked[i + k] = l.tfar[k] < 0.0f;
+    }
+}
+
 void loop_packet_stream(RTCScene scene, RTCIntersectContext& context, const Rays& rays,
                         std::size_t first, std::size_t last, Blocked& blocked) {
     constexpr unsigned kPackets = 16;
@@ -317,6 +347,7 @@ void add_bare(std::vector<Contestant>& contestants, const std::string& suffix, R
         {"rtcOccluded16", loop_packets<16, RTCRay16, rtcOccluded16>},
         {"rtcOccluded1M", loop_stream},
         {"rtcOccludedNM", loop_packet_stream},
+        {"rtcOccludedNp", loop_lane_stream},
     };
     const std::pair<const char*, RTCIntersectContextFlags> all_flags[] = {
         {"", RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT},
@@ -357,7 +388,7 @@ void compete(std::vector<Contestant>& contestants, std::size_t rays, int threads
         const auto mega_rays_per = [&](const std::vector<double>& seconds) {
             return 1e-6 * static_cast<double>(rays) / median(seconds);
         };
-        fmt::print("{:34} {:7.2f} Mrays/s {:7.2f} Mrays/CPU s {:8.3f} % blocked\n", contestant.name,
+        fmt::print("{:38} {:7.2f} Mrays/s {:7.2f} Mrays/CPU s {:8.3f} % blocked\n", contestant.name,
                    mega_rays_per(contestant.seconds), mega_rays_per(contestant.cpu_seconds),
                    100.0 * contestant.blocked);
     }
@@ -382,32 +413,31 @@ int run(int argc, char** argv) {
     const std::vector<Receiver> receivers =
         tracer.receivers(camera, size, tracer.visible_surfaces(camera, size, progress));
     const Rays rays = bare_rays(receivers, size, light);
-    const BareScene fast(scene, RTC_SCENE_FLAG_NONE);
-    const BareScene robust(scene, RTC_SCENE_FLAG_ROBUST);
+    const BareScene fast(scene, RTC_SCENE_FLAG_NONE, false);
+    const BareScene fast_flat(scene, RTC_SCENE_FLAG_NONE, true);
+    const BareScene robust_flat(scene, RTC_SCENE_FLAG_ROBUST, true);
     std::vector<float> visibility(receivers.size());
 
     std::vector<Contestant> contestants;
-    const auto count_blocked = [&] {
-        double blocked = 0.0;
-        for (std::size_t i = 0; i < receivers.size(); ++i) {
-            if (visibility[i] == 0.0f && trace::faces_light(receivers[i], light)) ++blocked;
-        }
-        return blocked / static_cast<double>(rays.size());
-    };
+    double blocked = 0.0;
     const auto visibility_run = [&] {
         tracer.visibility(receivers, size, light, 1, 1, visibility, progress);
-        return 0.0;  // counted once, outside the time
+        return blocked;  // counted once, outside the time
     };
+    visibility_run();
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        if (visibility[i] == 0.0f && trace::faces_light(receivers[i], light)) ++blocked;
+    }
+    blocked /= static_cast<double>(rays.size());
     contestants.push_back({kOurs, visibility_run, {}, {}, 0.0});
     add_bare(contestants, "", fast.top, rays);
-    add_bare(contestants, ", robust", robust.top, rays);
+    add_bare(contestants, ", flat", fast_flat.top, rays);
+    add_bare(contestants, ", flat, robust", robust_flat.top, rays);
     if (argc > 5) {
         std::erase_if(contestants, [&](const Contestant& contestant) {
             return contestant.name != kOurs && contestant.name.find(argv[5]) == std::string::npos;
         });
     }
-    visibility_run();
-    fmt::print("{}: {:.3f} % blocked\n", kOurs, 100.0 * count_blocked());
     for (const int threads : {1, 2}) {
         compete(contestants, rays.size(), threads, rounds);
     }

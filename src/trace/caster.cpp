@@ -1,8 +1,9 @@
 // The scene in Embree: I. Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing",
 // ACM Transactions on Graphics 33(4), 2014. Compiles against Embree 3 and 4.
 //
-// Meshes that are used once lie in the top scene, their corners moved to the world in double;
-// meshes used more often are Embree instances. Geometry number = instance number in both cases.
+// Meshes lie in the top scene, their corners moved to the world in double; in large scenes those
+// that are used more than once are Embree instances. Geometry number = instance number in both
+// cases.
 // RTC_SCENE_FLAG_ROBUST: without it rays can slip through the common edge of two triangles, and
 // a closed room would let in light. bench/trace_bench.cpp shows what it costs.
 
@@ -24,7 +25,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -39,52 +39,85 @@ namespace {
 /// in 3.13.5 of Debian 12 and in releases up to 4.4.0).
 constexpr const char* kDeviceConfig = "max_isa=avx2";
 
+/// Scenes of at most so many triangles, instances counted, know no instances: one tree over all of
+/// them is walked faster. It takes about 150 bytes a triangle.
+constexpr std::uint64_t kFlatTriangles = 2'000'000;
+
 constexpr std::string_view kBuildTask = "building the ray tracer's tree";
+
+// What all shadow rays of a batch have in common, one value a lane. The id is the lane.
+constexpr std::size_t kLanes = ShadowRays::kCapacity;
+alignas(64) constexpr std::array<float, kLanes> kZeros{};
+alignas(64) constexpr std::array<unsigned, kLanes> kNoFlags{};
+alignas(64) constexpr std::array<unsigned, kLanes> kEveryMask = [] {
+    std::array<unsigned, kLanes> mask{};
+    mask.fill(~0u);
+    return mask;
+}();
+alignas(64) constexpr std::array<unsigned, kLanes> kIds = [] {
+    std::array<unsigned, kLanes> ids{};
+    for (unsigned lane = 0; lane < kLanes; ++lane)
+        ids[lane] = lane;
+    return ids;
+}();
 
 // What differs between Embree 3 and 4. Streams are the fastest of Embree 3's calls for coherent
 // rays (bench/trace_bench.cpp); Embree 4 has none, so there it is packets of 8, or of 4 without
-// AVX.
+// AVX. Both mark the rays that are blocked by a negative tfar.
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 constexpr auto kBatchSupported = RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
+
+struct RayLanes {
+    float *org_x, *org_y, *org_z, *tnear;
+    float *dir_x, *dir_y, *dir_z, *time;
+    float* tfar;
+    unsigned *mask, *id, *flags;
+};
 
 void init_context(QueryContext& context) {
     rtcInitRayQueryContext(&context);
 }
 
 template <unsigned N, typename Packet>
-void occluded_packets(RTCScene scene, RTCOccludedArguments& arguments, std::span<RTCRay> rays,
+void occluded_packets(RTCScene scene, RTCOccludedArguments& arguments, const RayLanes& rays,
+                      std::size_t count,
                       void (*occluded)(const int*, RTCScene, Packet*, RTCOccludedArguments*)) {
-    for (std::size_t first = 0; first < rays.size(); first += N) {
-        const std::size_t count = std::min<std::size_t>(N, rays.size() - first);
+    for (std::size_t first = 0; first < count; first += N) {
         alignas(Packet) int valid[N];
+        for (unsigned lane = 0; lane < N; ++lane)
+            valid[lane] = first + lane < count ? -1 : 0;
         Packet packet;
-        for (unsigned lane = 0; lane < N; ++lane) {
-            valid[lane] = lane < count ? -1 : 0;
-            // A packet is the members of its rays in the order of RTCRay, each N times.
-            const RTCRay& ray = rays[first + std::min<std::size_t>(lane, count - 1)];
-            for (std::size_t member = 0; member < sizeof(RTCRay) / sizeof(float); ++member) {
-                std::memcpy(reinterpret_cast<float*>(&packet) + member * N + lane,
-                            reinterpret_cast<const float*>(&ray) + member, sizeof(float));
-            }
-        }
+        const auto take = [first](auto& lanes, const auto* from) {
+            std::memcpy(lanes, from + first, sizeof(lanes));
+        };
+        take(packet.org_x, rays.org_x);
+        take(packet.org_y, rays.org_y);
+        take(packet.org_z, rays.org_z);
+        take(packet.tnear, rays.tnear);
+        take(packet.dir_x, rays.dir_x);
+        take(packet.dir_y, rays.dir_y);
+        take(packet.dir_z, rays.dir_z);
+        take(packet.time, rays.time);
+        take(packet.tfar, rays.tfar);
+        take(packet.mask, rays.mask);
+        take(packet.id, rays.id);
+        take(packet.flags, rays.flags);
         occluded(valid, scene, &packet, &arguments);
-        for (unsigned lane = 0; lane < count; ++lane)
-            rays[first + lane].tfar = packet.tfar[lane];
+        std::memcpy(rays.tfar + first, packet.tfar, sizeof(packet.tfar));
     }
 }
 
-/// Marks the rays that are blocked by a negative tfar.
-void occluded_batch(RTCDevice device, RTCScene scene, QueryContext& context,
-                    std::span<RTCRay> rays) {
+void occluded_batch(RTCDevice device, RTCScene scene, QueryContext& context, const RayLanes& rays,
+                    std::size_t count) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
     arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
     arguments.context = &context;
     if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
-        occluded_packets<8, RTCRay8>(scene, arguments, rays, &rtcOccluded8);
+        occluded_packets<8, RTCRay8>(scene, arguments, rays, count, &rtcOccluded8);
     } else {
-        occluded_packets<4, RTCRay4>(scene, arguments, rays, &rtcOccluded4);
+        occluded_packets<4, RTCRay4>(scene, arguments, rays, count, &rtcOccluded4);
     }
 }
 
@@ -97,16 +130,17 @@ void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
 
 #else
 using QueryContext = RTCIntersectContext;
+using RayLanes = RTCRayNp;
 constexpr auto kBatchSupported = RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED;
 
 void init_context(QueryContext& context) {
     rtcInitIntersectContext(&context);
 }
 
-/// Marks the rays that are blocked by a negative tfar.
-void occluded_batch(RTCDevice, RTCScene scene, QueryContext& context, std::span<RTCRay> rays) {
+void occluded_batch(RTCDevice, RTCScene scene, QueryContext& context, const RayLanes& rays,
+                    std::size_t count) {
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcOccluded1M(scene, &context, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
+    rtcOccludedNp(scene, &context, &rays, static_cast<unsigned>(count));
 }
 
 void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
@@ -141,10 +175,10 @@ float sum_of_magnitudes(Vec3 v) {
 struct Query {
     QueryContext base;
     const Scene* scene = nullptr;
-    float scene_magnitude_m = 0.0f;       ///< bounds the sum of a corner's coordinates
-    std::span<const float> local_scales;  ///< by instance: most that a world's metre can be in it
-    std::span<const ShadowRay> rays;      ///< occlusion queries: by ray id
-    Vec3 direction_ws{0.0f};              ///< queries for the first hit
+    float scene_magnitude_m = 0.0f;    ///< bounds the sum of a corner's coordinates
+    float local_scale = 1.0f;          ///< most that a world's metre can be in a mesh's space
+    const ShadowRays* rays = nullptr;  ///< occlusion queries
+    Vec3 direction_ws{0.0f};           ///< queries for the first hit
 };
 
 const Query& query_of(const RTCFilterFunctionNArguments& arguments) {
@@ -161,15 +195,13 @@ const Mesh& mesh_of(const Scene& scene, SurfaceId surface) {
     return scene.meshes()[scene.instances()[surface.instance].mesh];
 }
 
-/// Calls rejects(query, surface, lane) for each hit that Embree has found, and makes Embree go on
-/// where it is true.
+/// Calls rejects(query, lane) for each hit that Embree has found, and makes Embree go on where it
+/// is true.
 template <typename Rejects>
 void filter_hits(const RTCFilterFunctionNArguments& arguments, const Rejects& rejects) {
     const Query& query = query_of(arguments);
     for (unsigned lane = 0; lane < arguments.N; ++lane) {
-        if (arguments.valid[lane] == 0) continue;
-        const SurfaceId surface = surface_of(arguments.hit, arguments.N, lane);
-        if (rejects(query, surface, lane)) arguments.valid[lane] = 0;
+        if (arguments.valid[lane] != 0 && rejects(query, lane)) arguments.valid[lane] = 0;
     }
 }
 
@@ -180,8 +212,9 @@ bool hits_hole(const RTCFilterFunctionNArguments& arguments, const Scene& scene,
                    RTCHitN_v(arguments.hit, arguments.N, lane));
 }
 
-bool clearly_blocks(const Query& query, const RTCFilterFunctionNArguments& arguments,
-                    SurfaceId surface, unsigned lane, const ShadowRay& ray) {
+/// True for nearly all hits, and never for one on the receiver's own triangle.
+bool clearly_blocks(const Query& query, const RTCFilterFunctionNArguments& arguments, unsigned lane,
+                    const ShadowRay& ray) {
     // Embree gives the ray and the normal in the space of the mesh.
     RTCRayN* rays = arguments.ray;
     RTCHitN* hits = arguments.hit;
@@ -194,7 +227,7 @@ bool clearly_blocks(const Query& query, const RTCFilterFunctionNArguments& argum
     const float reach_m = query.scene_magnitude_m + sum_of_magnitudes(ray.receiver->position_ws) +
                           (ray.to_infinity ? 0.0f : sum_of_magnitudes(ray.direction_ws));
     const float clear_m = kClearFraction * reach_m;
-    const float clear = clear_m * query.local_scales[surface.instance] * glm::length(normal);
+    const float clear = clear_m * query.local_scale * glm::length(normal);
     const float slope = std::abs(glm::dot(normal, direction));
     return t * glm::dot(ray.receiver->normal_ws, ray.direction_ws) > clear_m && t * slope > clear &&
            (ray.to_infinity || (1.0f - t) * slope > clear);
@@ -202,19 +235,22 @@ bool clearly_blocks(const Query& query, const RTCFilterFunctionNArguments& argum
 
 template <bool kMasked>
 void reject_unblocking(const RTCFilterFunctionNArguments* arguments) {
-    filter_hits(*arguments, [&](const Query& query, SurfaceId surface, unsigned lane) {
-        const ShadowRay& ray = query.rays[RTCRayN_id(arguments->ray, arguments->N, lane)];
+    filter_hits(*arguments, [&](const Query& query, unsigned lane) {
+        const ShadowRay ray = query.rays->ray(RTCRayN_id(arguments->ray, arguments->N, lane));
+        const bool clear = clearly_blocks(query, *arguments, lane, ray);
+        if (!kMasked && clear) return false;
+        const SurfaceId surface = surface_of(arguments->hit, arguments->N, lane);
         if (surface == ray.receiver->id) return true;
         if (kMasked && hits_hole(*arguments, *query.scene, surface, lane)) return true;
-        if (clearly_blocks(query, *arguments, surface, lane, ray)) return false;
-        return touches_only(*query.scene, world_triangle(*query.scene, surface), ray);
+        return !clear && touches_only(*query.scene, world_triangle(*query.scene, surface), ray);
     });
 }
 
 template <bool kMasked>
 void reject_unseen(const RTCFilterFunctionNArguments* arguments) {
-    filter_hits(*arguments, [&](const Query& query, SurfaceId surface, unsigned lane) {
+    filter_hits(*arguments, [&](const Query& query, unsigned lane) {
         const Scene& scene = *query.scene;
+        const SurfaceId surface = surface_of(arguments->hit, arguments->N, lane);
         if (kMasked && hits_hole(*arguments, scene, surface, lane)) return true;
         if (scene.materials()[mesh_of(scene, surface).material].double_sided) return false;
         const DVec3 front = world_triangle(scene, surface).front_normal_ws();
@@ -222,25 +258,16 @@ void reject_unseen(const RTCFilterFunctionNArguments* arguments) {
     });
 }
 
-RTCRay embree_ray(const ShadowRay& ray, unsigned id) {
-    const Vec3 origin = lifted_position_ws(*ray.receiver);
-    RTCRay result;
-    result.org_x = origin.x;
-    result.org_y = origin.y;
-    result.org_z = origin.z;
-    result.tnear = 0.0f;
-    result.dir_x = ray.direction_ws.x;
-    result.dir_y = ray.direction_ws.y;
-    result.dir_z = ray.direction_ws.z;
-    result.time = 0.0f;
-    result.tfar = ray.to_infinity ? std::numeric_limits<float>::infinity() : 1.0f;
-    result.mask = ~0u;
-    result.id = id;
-    result.flags = 0;
-    return result;
+template <typename T>
+T* unchanged(const std::array<T, kLanes>& lanes) {
+    return const_cast<T*>(lanes.data());  // Embree's interface knows no const
 }
 
 }  // namespace
+
+ShadowRays::ShadowRays(bool to_infinity)
+    : to_infinity_(to_infinity),
+      end_(to_infinity ? std::numeric_limits<float>::infinity() : 1.0f) {}
 
 class Caster::Impl {
 public:
@@ -260,20 +287,14 @@ public:
         rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
     }
 
-    void trace(std::span<ShadowRay> rays) const {
-        assert(rays.size() <= kBatchSize);
+    void trace(const ShadowRays& rays, const RayLanes& lanes) const {
         Query query;
         init_context(query.base);
         query.scene = &scene_;
         query.scene_magnitude_m = scene_magnitude_m_;
-        query.local_scales = local_scales_;
-        query.rays = rays;
-        std::array<RTCRay, kBatchSize> batch;
-        for (unsigned i = 0; i < rays.size(); ++i)
-            batch[i] = embree_ray(rays[i], i);
-        occluded_batch(device_.get(), top_.get(), query.base, {batch.data(), rays.size()});
-        for (unsigned i = 0; i < rays.size(); ++i)
-            rays[i].blocked = batch[i].tfar < 0.0f;
+        query.local_scale = local_scale_;
+        query.rays = &rays;
+        occluded_batch(device_.get(), top_.get(), query.base, lanes, rays.size());
     }
 
     SurfaceId first_seen(Vec3 origin_ws, Vec3 direction_ws, float t_min, float t_max) const {
@@ -305,9 +326,9 @@ private:
         for (const Instance& instance : instances)
             ++uses[instance.mesh];
 
+        const bool flat = scene_.triangle_count() <= kFlatTriangles;
         top_ = new_scene(progress);
         mesh_scenes_.resize(scene_.meshes().size());
-        local_scales_.assign(instances.size(), 1.0f);
         if (!scene_.bounds().empty()) {
             scene_magnitude_m_ = sum_of_magnitudes(
                 glm::max(glm::abs(scene_.bounds().min), glm::abs(scene_.bounds().max)));
@@ -317,7 +338,7 @@ private:
             const Mesh& mesh = scene_.meshes()[instance.mesh];
             if (mesh.triangles.empty()) continue;
             const float local_scale = scale_of_inverse(instance.world_from_local);
-            if (uses[instance.mesh] == 1 || !std::isfinite(local_scale)) {
+            if (flat || uses[instance.mesh] == 1 || !std::isfinite(local_scale)) {
                 attach(top_, new_triangles(mesh, instance.world_from_local), i);
                 continue;
             }
@@ -328,7 +349,7 @@ private:
                 commit(mesh_scene, progress);
             }
             attach(top_, new_instance(mesh_scene, instance.world_from_local), i);
-            local_scales_[i] = local_scale;
+            local_scale_ = std::max(local_scale_, local_scale);
         }
         commit(top_, progress);
     }
@@ -424,7 +445,7 @@ private:
     RTCError error_ = RTC_ERROR_NONE;
     std::string error_message_;
     float scene_magnitude_m_ = 0.0f;
-    std::vector<float> local_scales_;
+    float local_scale_ = 1.0f;
     DevicePtr device_;
     std::vector<ScenePtr> mesh_scenes_;  // one a mesh, null for those that are not instanced
     ScenePtr top_;
@@ -435,8 +456,20 @@ Caster::Caster(const Scene& scene, bool ignore_alpha, Progress& progress)
 
 Caster::~Caster() = default;
 
-void Caster::trace(std::span<ShadowRay> rays) const {
-    impl_->trace(rays);
+void Caster::trace(ShadowRays& rays) const {
+    if (rays.size() == 0) return;
+    impl_->trace(rays, {.org_x = rays.origin_x_.data(),
+                        .org_y = rays.origin_y_.data(),
+                        .org_z = rays.origin_z_.data(),
+                        .tnear = unchanged(kZeros),
+                        .dir_x = rays.direction_x_.data(),
+                        .dir_y = rays.direction_y_.data(),
+                        .dir_z = rays.direction_z_.data(),
+                        .time = unchanged(kZeros),
+                        .tfar = rays.far_.data(),
+                        .mask = unchanged(kEveryMask),
+                        .id = unchanged(kIds),
+                        .flags = unchanged(kNoFlags)});
 }
 
 SurfaceId Caster::first_seen(Vec3 origin_ws, Vec3 direction_ws, float t_min, float t_max) const {

@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -54,7 +55,6 @@ struct ShadowRay {
     const Receiver* receiver = nullptr;
     Vec3 direction_ws{0.0f};
     bool to_infinity = false;
-    bool blocked = false;  ///< what Caster::trace() finds
 };
 
 /// True when `triangle` of the scene, which the ray was found to hit, is not in the ray's way as
@@ -63,8 +63,8 @@ bool touches_only(const Scene& scene, const Triangle& triangle, const ShadowRay&
 
 /// How far rounding to float can have moved a position, at most, in metres.
 inline float rounding_distance_m(Vec3 position_ws) {
-    const Vec3 magnitude = glm::abs(position_ws);
-    return static_cast<float>(kUnitRoundoff) * (magnitude.x + magnitude.y + magnitude.z);
+    return static_cast<float>(kUnitRoundoff) *
+           (std::abs(position_ws.x) + std::abs(position_ws.y) + std::abs(position_ws.z));
 }
 
 /// Where the receiver's rays start: surely not below its plane, where they could pass beneath the

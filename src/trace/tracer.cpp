@@ -78,7 +78,8 @@ private:
 template <typename LightType>
 class HardShadows {
 public:
-    HardShadows(const Caster& caster, const LightType& light) : caster_(caster), light_(light) {}
+    HardShadows(const Caster& caster, const LightType& light)
+        : caster_(caster), light_(light), rays_(kDirectional<LightType>) {}
 
     /// Adds a receiver whose visibility is wanted in `out`, by the next finish() at the latest.
     void add(const Receiver& receiver, std::size_t, float& out) {
@@ -91,27 +92,23 @@ public:
             out = 0.0f;
             return;
         }
-        ShadowRay& ray = rays_[count_];
-        ray.receiver = &receiver;
-        ray.direction_ws = place.direction_ws;
-        ray.to_infinity = kDirectional<LightType>;
-        outs_[count_++] = &out;
-        if (count_ == rays_.size()) finish();
+        outs_[rays_.size()] = &out;
+        rays_.add(receiver, place.direction_ws);
+        if (rays_.full()) finish();
     }
 
     void finish() {
-        if (count_ > 0) caster_.trace({rays_.data(), count_});
-        for (std::size_t i = 0; i < count_; ++i)
-            *outs_[i] = rays_[i].blocked ? 0.0f : 1.0f;
-        count_ = 0;
+        caster_.trace(rays_);
+        for (std::size_t i = 0; i < rays_.size(); ++i)
+            *outs_[i] = rays_.blocked(i) ? 0.0f : 1.0f;
+        rays_.clear();
     }
 
 private:
     const Caster& caster_;
     const LightType& light_;
-    std::array<ShadowRay, Caster::kBatchSize> rays_;
-    std::array<float*, Caster::kBatchSize> outs_;
-    std::size_t count_ = 0;
+    ShadowRays rays_;
+    std::array<float*, ShadowRays::kCapacity> outs_;
 };
 
 /// The same for a light with extent: one sample of every receiver is traced together, then the
@@ -120,7 +117,11 @@ template <typename LightType>
 class SoftShadows {
 public:
     SoftShadows(const Caster& caster, const LightType& light, const Strata& strata, unsigned seed)
-        : caster_(caster), light_(light), strata_(strata), seed_(seed) {}
+        : caster_(caster),
+          light_(light),
+          strata_(strata),
+          seed_(seed),
+          rays_(kDirectional<LightType>) {}
 
     /// `index` of the receiver and the seed decide its samples.
     void add(const Receiver& receiver, std::size_t index, float& out) {
@@ -154,41 +155,42 @@ private:
     };
 
     void cast(int sample) {
-        std::size_t rays = 0;
+        rays_.clear();
         for (std::size_t i = 0; i < count_; ++i) {
             Lane& lane = lanes_[i];
             const Vec2 jitter = random_2d(lane.index, static_cast<std::uint32_t>(sample), seed_);
             const LightSample place =
                 sample_light(*lane.receiver, light_, strata_.point(sample, jitter));
             if (!(place.weight > 0.0f)) continue;
-            rays_[rays] = {lane.receiver, place.direction_ws, kDirectional<LightType>};
-            weights_[rays] = place.weight;
-            lane_of_ray_[rays++] = &lane;
+            weights_[rays_.size()] = place.weight;
+            lane_of_ray_[rays_.size()] = &lane;
+            rays_.add(*lane.receiver, place.direction_ws);
         }
-        if (rays > 0) caster_.trace({rays_.data(), rays});
-        for (std::size_t i = 0; i < rays; ++i) {
+        caster_.trace(rays_);
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
             lane_of_ray_[i]->weight += weights_[i];
-            if (!rays_[i].blocked) lane_of_ray_[i]->unblocked += weights_[i];
+            if (!rays_.blocked(i)) lane_of_ray_[i]->unblocked += weights_[i];
         }
     }
 
     /// What counts when all samples are below the horizon: the light's highest place, which is not.
-    float highest_visibility(const Receiver& receiver) const {
-        ShadowRay ray{&receiver, highest_direction(receiver, light_), kDirectional<LightType>};
-        caster_.trace({&ray, 1});
-        return ray.blocked ? 0.0f : 1.0f;
+    float highest_visibility(const Receiver& receiver) {
+        rays_.clear();
+        rays_.add(receiver, highest_direction(receiver, light_));
+        caster_.trace(rays_);
+        return rays_.blocked(0) ? 0.0f : 1.0f;
     }
 
     const Caster& caster_;
     const LightType& light_;
     const Strata& strata_;
     unsigned seed_;
-    std::array<Lane, Caster::kBatchSize> lanes_;
+    std::array<Lane, ShadowRays::kCapacity> lanes_;
     std::size_t count_ = 0;
     // The rays of one sample: of those lanes for which it is above the horizon.
-    std::array<ShadowRay, Caster::kBatchSize> rays_;
-    std::array<float, Caster::kBatchSize> weights_;
-    std::array<Lane*, Caster::kBatchSize> lane_of_ray_;
+    ShadowRays rays_;
+    std::array<float, ShadowRays::kCapacity> weights_;
+    std::array<Lane*, ShadowRays::kCapacity> lane_of_ray_;
 };
 
 /// Calls shadows.add() for the pixels of tiles [first, last), and finishes.

@@ -28,7 +28,7 @@ public:
     /// The receiver of each pixel, row-major, top row first, from the surfaces that the pixels show
     /// (width * height): where the ray through the pixel's centre meets the plane of the triangle,
     /// computed in double from the scene, so that no depth buffer's precision enters. A centre that
-    /// misses its triangle (rasterisers move corners by up to 1/256 of a pixel), or meets its very
+    /// misses its triangle (rasterisers move corners by up to 1/512 of a pixel), or meets its very
     /// edge, is moved into it. Triangles without area give no receiver.
     std::vector<Receiver> receivers(const Camera& camera, Extent size,
                                     std::span<const SurfaceId> surfaces) const;
