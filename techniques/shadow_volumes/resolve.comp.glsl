@@ -52,25 +52,28 @@ bool hangs_over(ivec2 at) {
     return any(lessThan(sides * area, vec3(0.0)));
 }
 
-// The state of most neighbours on the same surface that face the light too, or the pixel's own when
-// there are none.
+// The state of most neighbours that face the light too: of those on the same surface, or of all when
+// the pixel is alone on its own. The pixel's own with none, or as many of either state.
 bool mended(ivec2 at, vec3 normal_ws) {
     uint instance = imageLoad(ids, at).x;
     int votes = 0;
+    int surface_votes = 0;
     for (int i = 0; i < 9; ++i) {
         ivec2 other = at + ivec2(i % 3, i / 3) - 1;
         bool outside = any(lessThan(other, ivec2(0))) ||
                        any(greaterThanEqual(other, ivec2(push.size)));
-        if (i == 4 || outside || imageLoad(ids, other).x != instance) continue;
+        if (i == 4 || outside) continue;
+        float depth = texelFetch(depths, other, 0).x;
         vec3 other_normal = unpack_unit_vector(imageLoad(normals, other).x);
-        vec3 other_ws = receiver_position(push.world_from_clip, uvec2(other), push.size,
-                                          texelFetch(depths, other, 0).x);
-        if (dot(normal_ws, other_normal) < kMinNormalCosine ||
-            !faces_light(push.light, other_ws, other_normal)) {
-            continue;
-        }
-        votes += enclosed(other) ? 1 : -1;
+        vec3 other_ws = receiver_position(push.world_from_clip, uvec2(other), push.size, depth);
+        if (depth == 0.0 || !faces_light(push.light, other_ws, other_normal)) continue;
+        int vote = enclosed(other) ? 1 : -1;
+        bool same_surface = imageLoad(ids, other).x == instance &&
+                            dot(normal_ws, other_normal) >= kMinNormalCosine;
+        votes += vote;
+        surface_votes += same_surface ? vote : 0;
     }
+    if (surface_votes != 0) votes = surface_votes;
     return votes == 0 ? enclosed(at) : votes > 0;
 }
 
