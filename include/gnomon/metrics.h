@@ -20,9 +20,9 @@ struct Comparison {
     std::uint64_t pixels = 0;
 };
 
-/// Which pixels count. 1 channel: above 0 where a receiver faces the light.
-/// `pixel_size_m`: side of a pixel in metres at its receiver, 1 channel, for the artefact
-/// distances.
+/// Which pixels count. 1 channel: above 0 where a receiver faces the light, by more than a
+/// ten-thousandth of a radian. `pixel_size_m`: side of a pixel in metres at its receiver, 1
+/// channel, for the artefact distances.
 struct ComparisonMask {
     Image facing;
     Image pixel_size_m;

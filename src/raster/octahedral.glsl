@@ -1,4 +1,4 @@
-// Unit vectors in 32 bits by the octahedral map, off by at most 6e-5 rad. Q. Meyer et al., "On
+// Unit vectors in 32 bits by the octahedral map, off by at most 6.1e-5 rad. Q. Meyer et al., "On
 // Floating-Point Normal Vectors", EGSR 2010; Z. Cigolle et al., "A Survey of Efficient Representations
 // for Independent Unit Vectors", JCGT 2014.
 

@@ -242,6 +242,9 @@ TEST_F(GroundTruthTest, JudgesReceiversThatTheLightCanReach) {
     EXPECT_EQ(judged(low), 0u);
     low.angular_diameter_rad = 0.3f;
     EXPECT_EQ(judged(low), all);
+    // Too low for normals of 16 bits to tell.
+    EXPECT_EQ(judged(DirectionalLight{.to_light_ws = normalize({1, 0, 0.5e-4f})}), 0u);
+    EXPECT_EQ(judged(DirectionalLight{.to_light_ws = normalize({1, 0, 2e-4f})}), all);
     EXPECT_EQ(judged(PointLight{.position_ws = {0, 0, -19}}), all);
     EXPECT_EQ(judged(PointLight{.position_ws = {0, 0, -21}}), 0u);
     EXPECT_EQ(judged(DiscLight{.center_ws = {0, 0, -10}, .normal_ws = {0, 0, -1}}), all);
