@@ -110,8 +110,11 @@ void Pipeline::make_layout() {
           "creating a pipeline layout");
 }
 
-Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info)
-    : device_(&device), layout_info_(info.layout) {
+// Delegating makes the object whole at once, so that its destructor frees what was made before a
+// step that fails.
+Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info) : Pipeline() {
+    device_ = &device;
+    layout_info_ = info.layout;
     make_layout();
     const ShaderModule shader(device, info.code);
     std::vector<VkSpecializationMapEntry> entries;
@@ -132,11 +135,11 @@ Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info)
         "creating a compute pipeline");
 }
 
-Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
-    : device_(&device),
-      bind_point_(VK_PIPELINE_BIND_POINT_GRAPHICS),
-      stages_(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT),
-      layout_info_(info.layout) {
+Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info) : Pipeline() {
+    device_ = &device;
+    bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    stages_ = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    layout_info_ = info.layout;
     make_layout();
     const ShaderModule vertex(device, info.vertex);
     const bool has_fragment = !info.fragment.empty();

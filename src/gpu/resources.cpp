@@ -42,6 +42,13 @@ Buffer::Buffer(const Device& device, std::uint64_t size_bytes, VkBufferUsageFlag
     : Buffer() {
     device_ = &device;
     size_ = std::max<std::uint64_t>(size_bytes, 16);
+    const std::uint64_t most = device.limits().maxStorageBufferRange;
+    if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && size_ > most) {
+        fail_machine(
+            "{} MiB of one kind of data is more than the {} MiB that shaders of this device "
+            "can read; use a smaller scene or another device",
+            (size_ >> 20) + 1, most >> 20);
+    }
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size_, .usage = usage};
     check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), "creating a buffer");

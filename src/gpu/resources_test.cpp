@@ -64,6 +64,19 @@ TEST_F(BufferTest, HoldsWhatWasUpdated) {
     EXPECT_EQ(read_back(device(), buffer), expected);
 }
 
+TEST_F(BufferTest, RefusesToBeLargerThanShadersCanRead) {
+    const std::uint64_t limit = device().limits().maxStorageBufferRange;
+    try {
+        const Buffer buffer(device(), limit + 1, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                            Placement::device);
+        FAIL() << "a buffer of " << limit + 1 << " bytes was made";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::machine);
+        EXPECT_NE(std::string(error.what()).find(std::to_string(limit >> 20)), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST_F(BufferTest, CanBeBoundWhenEmpty) {
     Buffer buffer = buffer_of(device(), {});
     EXPECT_TRUE(buffer);
