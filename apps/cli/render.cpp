@@ -79,9 +79,12 @@ std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::ve
     for (const Light& light : lights) {
         progress.check();
         frame.light = light;
-        visibilities.push_back(
-            technique ? technique->render(frame)
-                      : trace_visibility(context, frame, {.samples = samples}, progress));
+        if (technique) {
+            technique->render(frame, visibilities.emplace_back(), progress);
+        } else {
+            visibilities.push_back(
+                trace_visibility(context, frame, {.samples = samples}, progress));
+        }
     }
     return visibilities;
 }

@@ -79,9 +79,11 @@ public:
     virtual void prepare(const Scene& scene, Progress& progress) = 0;
     void prepare(const Scene& scene);
 
-    /// Once per frame and light: the visibility of `frame.light` at every receiver.
-    /// Throws Error{input} for lights that the technique cannot shadow.
-    virtual void render(const Frame& frame, Visibility& out) = 0;
+    /// Once per frame and light: the visibility of `frame.light` at every receiver. Techniques on
+    /// the host report progress and can be cancelled.
+    /// Throws Error{input} for lights that the technique cannot shadow, Error{cancelled}.
+    virtual void render(const Frame& frame, Visibility& out, Progress& progress) = 0;
+    void render(const Frame& frame, Visibility& out);
     Visibility render(const Frame& frame);
 
     virtual RenderStats last_render() const = 0;

@@ -189,6 +189,10 @@ Image light_picture(Context& context, const Frame& frame, std::span<const LitBy>
         fail_input("light_picture: exposure is {}; it must be 0 (automatic) or above",
                    options.exposure);
     }
+    for (const float ambient : {options.ambient.x, options.ambient.y, options.ambient.z}) {
+        if (std::isfinite(ambient)) continue;
+        fail_input("light_picture: ambient is {}; it must be finite", ambient);
+    }
     Visibility all;
     std::vector<LitBy> shaded(lights.begin(), lights.end());
     if (shaded.empty()) {  // ambient only

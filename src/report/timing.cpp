@@ -47,6 +47,16 @@ Spread spread_of(std::span<const RenderStats> stats, Get get) {
     return spread(std::move(values));
 }
 
+/// Hears of nothing, but passes on that the caller wants the work to end.
+class OnlyCancels final : public Progress {
+public:
+    explicit OnlyCancels(const Progress& progress) : progress_(progress) {}
+    bool cancelled() const override { return progress_.cancelled(); }
+
+private:
+    const Progress& progress_;
+};
+
 }  // namespace
 
 Spread spread(std::vector<double> values) {
@@ -77,11 +87,12 @@ Timing time_renders(Technique& technique, const Frame& frame, int untimed, int t
                     std::string_view task, Progress& progress, Visibility& out) {
     std::vector<double> total_ms;
     std::vector<RenderStats> stats;
+    OnlyCancels within(progress);
     for (int i = 0; i < untimed + timed; ++i) {
         throw_if_cancelled(progress, task);
         progress.report(task, static_cast<double>(i) / (untimed + timed));
         const Clock::time_point start = Clock::now();
-        technique.render(frame, out);
+        technique.render(frame, out, within);
         if (i < untimed) continue;
         total_ms.push_back(ms_since(start));
         stats.push_back(technique.last_render());

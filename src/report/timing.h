@@ -26,7 +26,7 @@ Spread spread(std::vector<double> values);
 /// one name are added within a render; a render without a pass spent 0 in it.
 Timing summarize(std::vector<double> total_ms, std::span<const RenderStats> stats);
 
-/// Renders `frame` `untimed` + `timed` times into `out`. Throws Error{cancelled} between renders.
+/// Renders `frame` `untimed` + `timed` times into `out`. Throws Error{cancelled}.
 Timing time_renders(Technique& technique, const Frame& frame, int untimed, int timed,
                     std::string_view task, Progress& progress, Visibility& out);
 

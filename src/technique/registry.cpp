@@ -34,6 +34,11 @@ void Technique::prepare(const Scene& scene) {
     prepare(scene, silent);
 }
 
+void Technique::render(const Frame& frame, Visibility& out) {
+    Progress silent;
+    render(frame, out, silent);
+}
+
 Visibility Technique::render(const Frame& frame) {
     Visibility visibility;
     render(frame, visibility);

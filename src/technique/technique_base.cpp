@@ -27,15 +27,15 @@ void TechniqueBase::prepare(const Scene& scene, Progress& progress) {
     is_prepared_ = true;
 }
 
-void TechniqueBase::render(const Frame& frame, Visibility& out) {
+void TechniqueBase::render(const Frame& frame, Visibility& out, Progress& progress) {
     frame.validate();
     if (!supports(info_.lights, frame.light)) {
         fail_input("{}: cannot shadow a {} light (\"{}\")", info_.name, light_kind(frame.light),
                    light_name(frame.light));
     }
-    if (!is_prepared_ || !same(prepared_, frame.scene.identity())) prepare(frame.scene);
+    if (!is_prepared_ || !same(prepared_, frame.scene.identity())) prepare(frame.scene, progress);
     stats_ = {};
-    render_frame(frame, out, stats_);
+    render_frame(frame, out, stats_, progress);
     for (const PassTime& pass : stats_.passes)
         stats_.gpu_ms += pass.ms;
 }
@@ -46,7 +46,8 @@ void GpuTechnique::prepare_scene(const Scene& scene, Progress&) {
 
 void GpuTechnique::describe_texels(const Frame&, Visibility::Impl&) {}
 
-void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats& stats) {
+void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
+                                Progress&) {
     const std::shared_ptr<FrameReceivers> receivers = context().receivers(frame);
     const raster::GpuScene& scene = context().gpu_scene(frame.scene);
     gpu::Image& visibility = out.impl().device_target(context(), frame.size);
@@ -65,12 +66,12 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
     describe_texels(frame, out.impl());
 }
 
-void HostTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats& stats) {
-    Progress silent;
-    const std::shared_ptr<FrameReceivers> receivers = context().receiver_points(frame, silent);
+void HostTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
+                                 Progress& progress) {
+    const std::shared_ptr<FrameReceivers> receivers = context().receiver_points(frame, progress);
     Image& target = out.impl().host_target(context(), frame.size);
     const Clock::time_point start = Clock::now();
-    compute(frame, receivers->points, target.pixels());
+    compute(frame, receivers->points, target.pixels(), progress);
     stats.cpu_ms = ms_since(start);
     stats.memory_bytes = memory_bytes();
 }

@@ -15,7 +15,7 @@ public:
     using Technique::prepare;
     using Technique::render;
     void prepare(const Scene& scene, Progress& progress) final;
-    void render(const Frame& frame, Visibility& out) final;
+    void render(const Frame& frame, Visibility& out, Progress& progress) final;
     RenderStats last_render() const final { return stats_; }
 
 protected:
@@ -25,7 +25,8 @@ protected:
     /// Once per scene.
     virtual void prepare_scene(const Scene& scene, Progress& progress) = 0;
     /// With a checked frame of the prepared scene. Fills all of `stats` but the sum of the passes.
-    virtual void render_frame(const Frame& frame, Visibility& out, RenderStats& stats) = 0;
+    virtual void render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
+                              Progress& progress) = 0;
 
     Context::Impl& context() { return context_; }
 
@@ -62,7 +63,8 @@ protected:
     virtual void describe_texels(const Frame& frame, Visibility::Impl& out);
 
 private:
-    void render_frame(const Frame& frame, Visibility& out, RenderStats& stats) final;
+    void render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
+                      Progress& progress) final;
 
     std::unique_ptr<gpu::Submission> submission_;
 };
@@ -74,11 +76,12 @@ protected:
 
     /// `out` has one value per receiver, in their order.
     virtual void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
-                         std::span<float> out) = 0;
+                         std::span<float> out, Progress& progress) = 0;
     virtual std::uint64_t memory_bytes() const = 0;
 
 private:
-    void render_frame(const Frame& frame, Visibility& out, RenderStats& stats) final;
+    void render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
+                      Progress& progress) final;
 };
 
 }  // namespace gnomon

@@ -63,7 +63,7 @@ private:
         ++prepared;
     }
     void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
-                 std::span<float> out) override {
+                 std::span<float> out, Progress&) override {
         ++computed;
         EXPECT_EQ(receivers.size(), std::size_t{frame.size.width} * frame.size.height);
         EXPECT_EQ(receivers.size(), out.size());

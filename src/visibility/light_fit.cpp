@@ -173,7 +173,7 @@ LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texe
                   float margin_texels) {
     constexpr float kMaxHalfAngleRad = radians(80.0f);
     if (light.outer_angle_rad > kMaxHalfAngleRad) {
-        fail_input("a spot of {}° does not fit one map; at most 160° do",
+        fail_input("a spot of {:.4g}° does not fit one map; at most 160° do",
                    2.0f * degrees(light.outer_angle_rad));
     }
     // Nearer than this to the light nothing is resolved; reversed Z keeps precision all the same.

@@ -39,12 +39,11 @@ private:
     }
 
     void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
-                 std::span<float> out) override {
-        Progress silent;
+                 std::span<float> out, Progress& progress) override {
         context()
-            .tracer(frame.scene, frame.ignore_alpha, silent)
+            .tracer(frame.scene, frame.ignore_alpha, progress)
             .visibility(receivers, frame.size, frame.light, options_.samples,
-                        static_cast<unsigned>(options_.seed), out, silent);
+                        static_cast<unsigned>(options_.seed), out, progress);
     }
 
     std::uint64_t memory_bytes() const override { return 0; }
