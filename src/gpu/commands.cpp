@@ -40,7 +40,8 @@ Access access_of(Use use) {
             return {kShaders, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, false};
         case Use::storage_read:
-            return {kShaders, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL, false};
+            return {kShaders, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT,
+                    VK_IMAGE_LAYOUT_GENERAL, false};
         case Use::storage_write:
             return {kShaders,
                     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
@@ -241,6 +242,10 @@ void Commands::bind(const Pipeline& pipeline, std::initializer_list<Binding> bin
         if (const auto* buffer = std::get_if<StorageBuffer>(&binding)) {
             buffers[count] = {buffer->buffer->handle(), 0, VK_WHOLE_SIZE};
             write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            write.pBufferInfo = &buffers[count];
+        } else if (const auto* uniform = std::get_if<UniformBuffer>(&binding)) {
+            buffers[count] = {uniform->buffer->handle(), 0, VK_WHOLE_SIZE};
+            write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
             write.pBufferInfo = &buffers[count];
         } else {
             images[count] = image_info(binding);

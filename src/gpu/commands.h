@@ -23,7 +23,11 @@ struct StorageImage {
 struct StorageBuffer {
     const Buffer* buffer = nullptr;
 };
-using Binding = std::variant<StorageBuffer, StorageImage, Texture>;
+/// At most 64 KiB that all invocations read alike.
+struct UniformBuffer {
+    const Buffer* buffer = nullptr;
+};
+using Binding = std::variant<StorageBuffer, UniformBuffer, StorageImage, Texture>;
 
 /// Where drawing goes, and what is there before.
 struct Targets {

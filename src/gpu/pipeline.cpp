@@ -13,6 +13,8 @@ VkDescriptorType descriptor_type(BindingType type) {
     switch (type) {
         case BindingType::storage_buffer:
             return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        case BindingType::uniform_buffer:
+            return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
         case BindingType::storage_image:
             return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
         case BindingType::texture:

@@ -8,7 +8,7 @@
 namespace gnomon::gpu {
 
 /// What a shader's binding n of set 0 is, in order from 0.
-enum class BindingType { storage_buffer, storage_image, texture };
+enum class BindingType { storage_buffer, uniform_buffer, storage_image, texture };
 
 struct PipelineLayoutInfo {
     std::vector<BindingType> bindings;

@@ -17,7 +17,7 @@ enum class Use {
     depth_target,   ///< depth/stencil attachment, tested and written
     depth_test,     ///< depth tested, not written; stencil written
     sampled,        ///< read by a fragment or compute shader through a sampler
-    storage_read,   ///< read by a shader as storage
+    storage_read,   ///< read by a shader as storage or uniform buffer
     storage_write,  ///< written (and read) by a shader as storage
     vertex_read,    ///< read by a vertex shader, as index, vertex or indirect buffer
     copy_source,

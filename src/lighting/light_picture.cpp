@@ -71,7 +71,7 @@ public:
         shade_ = gpu::Pipeline(device,
                                {.code = shaders::shade_comp,
                                 .layout = {{texture, storage_image, texture, texture, storage_image,
-                                            storage_image, storage_image, storage_buffer}}});
+                                            storage_image, storage_image, uniform_buffer}}});
         compose_ = gpu::Pipeline(
             device, {.code = shaders::compose_comp,
                      .layout = {{texture, texture, storage_image, storage_image, storage_image},
@@ -79,7 +79,7 @@ public:
         nearest_ = gpu::Sampler(device, {});
         shade_frame_ =
             gpu::Buffer(device, sizeof(shared::ShadeFrame),
-                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                         gpu::Placement::device);
         for (gpu::Image* image : {&lit_, &full_, &picture_}) {
             *image = gpu::Image(
@@ -145,7 +145,7 @@ private:
                                gpu::Texture{surfaces_.albedo.view(), &nearest_},
                                gpu::Texture{surfaces_.normal_gloss.view(), &nearest_},
                                gpu::StorageImage{seen.view()}, gpu::StorageImage{lit_.view()},
-                               gpu::StorageImage{full_.view()}, gpu::StorageBuffer{&shade_frame_}});
+                               gpu::StorageImage{full_.view()}, gpu::UniformBuffer{&shade_frame_}});
         commands.dispatch(frame_.size, kGroupSize);
     }
 

@@ -19,7 +19,7 @@ layout(set = 0, binding = 3) uniform sampler2D normal_glosses;  // w = shininess
 layout(set = 0, binding = 4, r32f) uniform readonly image2D visibility;
 layout(set = 0, binding = 5, rgba32f) uniform image2D lit_sum;   // a = product of visibilities
 layout(set = 0, binding = 6, rgba32f) uniform image2D full_sum;  // as if nothing were in the way; a = irradiance / pi
-layout(set = 0, binding = 7, scalar) readonly buffer Frame { ShadeFrame frame; };
+layout(set = 0, binding = 7, scalar) uniform Frame { ShadeFrame frame; };
 
 const float kPi = 3.14159265;
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709

@@ -14,6 +14,7 @@ const uint kLightPoint = 1u;  // spots too
 const uint kLightSphere = 2u;
 const uint kLightDisc = 3u;
 const uint kLightRect = 4u;
+const uint kLightOfAnyKind = 5u;  // of kLightKind in receiver.glsl: as LightShape::kind says
 
 /// Where a light is and how far it reaches around its centre.
 struct LightShape {

@@ -1,11 +1,16 @@
 // The receiver of a pixel, and whether it faces the light. Includers declare the push constants and
-// bind depth and normals.
+// bind depth and normals; their own specialization constants begin at 1 (LookupPipeline).
 
 #ifndef GNOMON_VISIBILITY_RECEIVER_GLSL
 #define GNOMON_VISIBILITY_RECEIVER_GLSL
 
 #include "raster/octahedral.glsl"
 #include "visibility/light_shape.shared.h"
+
+// The kind of light that the shader is compiled for.
+layout(constant_id = 0) const uint kLightKind = kLightOfAnyKind;
+
+uint kind_of(LightShape light) { return kLightKind == kLightOfAnyKind ? light.kind : kLightKind; }
 
 vec3 receiver_position(mat4 world_from_clip, uvec2 pixel, uvec2 size, float depth) {
     vec2 ndc = 2.0 * (vec2(pixel) + 0.5) / vec2(size) - 1.0;
@@ -15,15 +20,15 @@ vec3 receiver_position(mat4 world_from_clip, uvec2 pixel, uvec2 size, float dept
 
 // Not normalised for lights at a finite distance.
 vec3 to_light_ws(LightShape light, vec3 p_ws) {
-    return light.kind == kLightDirectional ? light.position : light.position - p_ws;
+    return kind_of(light) == kLightDirectional ? light.position : light.position - p_ws;
 }
 
 // Does any part of the light lie above the receiver's plane, on the side to which it shines?
 bool faces_light(LightShape light, vec3 p_ws, vec3 normal_ws) {
     vec3 to_center = to_light_ws(light, p_ws);
     float height = dot(normal_ws, to_center);
-    bool shines_here = light.kind < kLightDisc || dot(light.normal, to_center) < 0.0;
-    switch (light.kind) {
+    bool shines_here = kind_of(light) < kLightDisc || dot(light.normal, to_center) < 0.0;
+    switch (kind_of(light)) {
         case kLightDirectional:
             height += light.radius;
             break;

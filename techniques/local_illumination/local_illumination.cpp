@@ -6,6 +6,7 @@
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
 #include "visibility/light_shape.h"
+#include "visibility/lookup_pipeline.h"
 
 namespace gnomon {
 
@@ -28,9 +29,9 @@ public:
         : GpuTechnique(context, local_illumination_info()) {
         const gpu::Device& device = context.impl().device();
         using enum gpu::BindingType;
-        lookup_ = gpu::Pipeline(device, {.code = shaders::local_illumination_comp,
-                                         .layout = {{texture, storage_image, storage_image},
-                                                    sizeof(shared::ReceiverPush)}});
+        lookup_ = LookupPipeline(device, {.code = shaders::local_illumination_comp,
+                                          .layout = {{texture, storage_image, storage_image},
+                                                     sizeof(shared::ReceiverPush)}});
         nearest_ = gpu::Sampler(device, {});
     }
 
@@ -39,16 +40,17 @@ private:
                 gpu::Image& visibility) override {
         const gpu::Pass pass(commands, "facing");
         commands.use(visibility, gpu::Use::storage_write);
-        commands.bind(lookup_, {gpu::Texture{input.receivers.depth.view(), &nearest_},
-                                gpu::StorageImage{input.receivers.normals.view()},
-                                gpu::StorageImage{visibility.view()}});
-        commands.push(lookup_, receiver_push(input.receivers, input.frame.light));
+        const gpu::Pipeline& lookup = lookup_.of(input.frame.light);
+        commands.bind(lookup, {gpu::Texture{input.receivers.depth.view(), &nearest_},
+                               gpu::StorageImage{input.receivers.normals.view()},
+                               gpu::StorageImage{visibility.view()}});
+        commands.push(lookup, receiver_push(input.receivers, input.frame.light));
         commands.dispatch(input.frame.size, kGroupSize);
     }
 
     std::uint64_t memory_bytes() const override { return 0; }
 
-    gpu::Pipeline lookup_;
+    LookupPipeline lookup_;
     gpu::Sampler nearest_;
 };
 

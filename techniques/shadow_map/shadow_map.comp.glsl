@@ -6,14 +6,14 @@
 #include "visibility/receiver.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 0) const uint kFilter = kFilterBox4x4;
+layout(constant_id = 1) const uint kFilter = kFilterBox4x4;
 
 layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D visibility;
 layout(set = 0, binding = 3) uniform sampler2DShadow map;  // linear, compares
 layout(set = 0, binding = 4) uniform sampler2D map_depth;  // the same map, its values
-layout(set = 0, binding = 5, scalar) readonly buffer Frame { ShadowMapFrame frame; };
+layout(set = 0, binding = 5, scalar) uniform Frame { ShadowMapFrame frame; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
 // A surface at 84° to the light; steeper ones are biased as this one.

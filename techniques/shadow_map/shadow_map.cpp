@@ -13,6 +13,7 @@
 #include "visibility/depth_map.h"
 #include "visibility/light_fit.h"
 #include "visibility/light_shape.h"
+#include "visibility/lookup_pipeline.h"
 
 #include <cmath>
 
@@ -75,14 +76,14 @@ public:
         using enum gpu::BindingType;
         gpu::ComputePipelineInfo lookup;
         lookup.code = shaders::shadow_map_comp;
-        lookup.layout = {{texture, storage_image, storage_image, texture, texture, storage_buffer},
+        lookup.layout = {{texture, storage_image, storage_image, texture, texture, uniform_buffer},
                          sizeof(shared::ReceiverPush)};
         lookup.constants = {static_cast<std::uint32_t>(options.filter)};
-        lookup_ = gpu::Pipeline(device, lookup);
+        lookup_ = LookupPipeline(device, lookup);
         nearest_ = gpu::Sampler(device, {});
         compare_ = gpu::Sampler(device, {.filter = VK_FILTER_LINEAR, .compare = true});
         frame_ = gpu::Buffer(device, sizeof(shared::ShadowMapFrame),
-                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                              gpu::Placement::device);
     }
 
@@ -122,13 +123,14 @@ private:
         const gpu::Pass pass(commands, "lookup");
         commands.update(frame_, frame_constants(light_fit));
         commands.use(visibility, gpu::Use::storage_write);
+        const gpu::Pipeline& lookup = lookup_.of(input.frame.light);
         commands.bind(
-            lookup_,
+            lookup,
             {gpu::Texture{input.receivers.depth.view(), &nearest_},
              gpu::StorageImage{input.receivers.normals.view()},
              gpu::StorageImage{visibility.view()}, gpu::Texture{map_.image().view(), &compare_},
-             gpu::Texture{map_.image().view(), &nearest_}, gpu::StorageBuffer{&frame_}});
-        commands.push(lookup_, receiver_push(input.receivers, input.frame.light));
+             gpu::Texture{map_.image().view(), &nearest_}, gpu::UniformBuffer{&frame_}});
+        commands.push(lookup, receiver_push(input.receivers, input.frame.light));
         commands.dispatch(input.frame.size, kGroupSize);
     }
 
@@ -144,7 +146,7 @@ private:
 
     Options options_;
     DepthMap map_;
-    gpu::Pipeline lookup_;
+    LookupPipeline lookup_;
     gpu::Sampler nearest_, compare_;
     gpu::Buffer frame_;
 };

@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -14,7 +15,7 @@
 #include "visibility/receiver.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 0) const uint kMendEdges = 1u;
+layout(constant_id = 1) const uint kMendEdges = 1u;
 
 layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
@@ -25,7 +26,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer Instances { SceneInstance i
 layout(set = 0, binding = 6, scalar) readonly buffer Slots { uint slot_of_instance[]; };
 layout(set = 0, binding = 7, scalar) readonly buffer Positions { vec3 positions[]; };
 layout(set = 0, binding = 8, scalar) readonly buffer Indices { uint indices[]; };
-layout(set = 0, binding = 9, scalar) readonly buffer View { mat4 clip_from_world; };
+layout(set = 0, binding = 9, scalar) uniform View { mat4 clip_from_world; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
 // Neighbouring pixels of one instance show one surface when their normals differ by less than 30°.
@@ -58,7 +59,8 @@ bool mended(ivec2 at, vec3 normal_ws) {
     uint instance = imageLoad(ids, at).x;
     int votes = 0;
     int surface_votes = 0;
-    for (int i = 0; i < 9; ++i) {
+    // Software drivers walk through branches that no pixel takes, but not through loops.
+    [[dont_unroll]] for (int i = 0; i < 9; ++i) {
         ivec2 other = at + ivec2(i % 3, i / 3) - 1;
         bool outside = any(lessThan(other, ivec2(0))) ||
                        any(greaterThanEqual(other, ivec2(push.size)));

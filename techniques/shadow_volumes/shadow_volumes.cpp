@@ -13,6 +13,7 @@
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
 #include "visibility/light_shape.h"
+#include "visibility/lookup_pipeline.h"
 #include "volume.h"
 #include "volume.vert.spv.h"
 
@@ -105,12 +106,12 @@ public:
         resolve.code = shaders::resolve_comp;
         resolve.layout = {
             {texture, storage_image, storage_image, texture, storage_image, storage_buffer,
-             storage_buffer, storage_buffer, storage_buffer, storage_buffer},
+             storage_buffer, storage_buffer, storage_buffer, uniform_buffer},
             sizeof(gnomon::shared::ReceiverPush)};
         resolve.constants = {options.mend_edges ? 1u : 0u};
-        resolve_ = gpu::Pipeline(device, resolve);
+        resolve_ = LookupPipeline(device, resolve);
         view_ = gpu::Buffer(device, sizeof(Mat4),
-                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                             gpu::Placement::device);
         nearest_ = gpu::Sampler(device, {});
     }
@@ -211,8 +212,9 @@ private:
         const gpu::Pass pass(commands, "resolve");
         commands.update(view_, input.frame.camera.clip_from_world(input.frame.size));
         commands.use(visibility, gpu::Use::storage_write);
+        const gpu::Pipeline& resolve = resolve_.of(input.frame.light);
         commands.bind(
-            resolve_,
+            resolve,
             {gpu::Texture{input.receivers.depth.view(), &nearest_},
              gpu::StorageImage{input.receivers.normals.view()},
              gpu::StorageImage{visibility.view()},
@@ -220,8 +222,8 @@ private:
              gpu::StorageImage{input.receivers.ids.view()},
              gpu::StorageBuffer{&input.scene.instances()}, gpu::StorageBuffer{&input.scene.slots()},
              gpu::StorageBuffer{&input.scene.positions()},
-             gpu::StorageBuffer{&input.scene.indices()}, gpu::StorageBuffer{&view_}});
-        commands.push(resolve_, receiver_push(input.receivers, input.frame.light));
+             gpu::StorageBuffer{&input.scene.indices()}, gpu::UniformBuffer{&view_}});
+        commands.push(resolve, receiver_push(input.receivers, input.frame.light));
         commands.dispatch(input.frame.size, kGroupSize);
     }
 
@@ -230,7 +232,8 @@ private:
     }
 
     Options options_;
-    gpu::Pipeline volume_, volume_clamped_, resolve_;
+    gpu::Pipeline volume_, volume_clamped_;
+    LookupPipeline resolve_;
     gpu::Sampler nearest_;
     gpu::Buffer view_;                    // clip_from_world of the camera
     std::vector<Adjacency> adjacencies_;  // of each mesh
