@@ -24,6 +24,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
@@ -208,15 +209,17 @@ int run(int argc, char** argv) {
     const gpu::Device& device = context.impl().device();
     const raster::GpuScene& gpu_scene = context.impl().gpu_scene(scene);
     const Frame frame{scene, scene.cameras().at(0), directional_light(scene), kView};
-    const Mat4 clip_from_world = fit_directional(directional_light(scene), frame.camera, kView,
-                                                 scene.bounds(), size_texels, kMarginTexels)
-                                     .clip_from_world;
+    const LightFit fit = fit_directional(directional_light(scene),
+                                         visible_corners(frame.camera, kView, scene.bounds()),
+                                         scene.bounds(), size_texels, kMarginTexels);
+    const Mat4 clip_from_world = fit.clip_from_world;
 
     gpu::Submission submission(device);
     const WorldMesh world(device, scene);
     Floor one_draw(device, size_texels), draws(device, size_texels);
     DepthMap depth_map(device);
-    const auto technique = make_technique(context, "shadow_map", {{"map_size", map_size}});
+    const auto technique =
+        make_technique(context, "shadow_map", {{"map_size", map_size}, {"cull_casters", false}});
     Visibility visibility;
 
     const auto record_one_draw = [&](gpu::Commands& commands) {
@@ -231,7 +234,7 @@ int run(int argc, char** argv) {
         });
     };
     const auto record_map = [&](gpu::Commands& commands) {
-        depth_map.record(commands, gpu_scene, clip_from_world, size_texels, false);
+        depth_map.record(commands, gpu_scene, std::array{MapLayer{fit, CasterVolume()}}, false);
     };
     std::vector<Contestant> contestants = {
         {"floor: one draw in the world", [&] { return timed(submission, record_one_draw); }},

@@ -202,6 +202,9 @@ void Commands::begin_drawing(const Targets& targets) {
     if (targets.depth != nullptr) {
         has_stencil = targets.depth->attachment_view() != VK_NULL_HANDLE;
         depth.imageView = has_stencil ? targets.depth->attachment_view() : targets.depth->view();
+        if (targets.depth_layer >= 0) {
+            depth.imageView = targets.depth->layer_view(static_cast<unsigned>(targets.depth_layer));
+        }
         stencil.imageView = depth.imageView;
     }
     const VkRect2D area{{0, 0}, {targets.size.width, targets.size.height}};

@@ -33,6 +33,7 @@ using Binding = std::variant<StorageBuffer, UniformBuffer, StorageImage, Texture
 struct Targets {
     std::vector<const Image*> colors;
     const Image* depth = nullptr;
+    int depth_layer = -1;  ///< of an array; -1: all of `depth`
     Extent size;
     bool clear_colors = true;
     bool clear_depth = true;     ///< to 0, the far plane of reversed Z

@@ -134,15 +134,24 @@ Image::Image(const Device& device, const ImageInfo& info) : Image() {
         attachment_view_ = make_view(aspects_);
         stencil_view_ = make_view(VK_IMAGE_ASPECT_STENCIL_BIT);
     }
+    for (unsigned layer = 0; info.array && layer < info.layers; ++layer)
+        layer_views_.push_back(make_view(aspects_, VK_IMAGE_VIEW_TYPE_2D, layer, 1));
 }
 
 VkImageView Image::make_view(VkImageAspectFlags aspects) const {
+    const bool array = info_.array || info_.layers > 1;
+    return make_view(aspects, array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0,
+                     info_.layers);
+}
+
+VkImageView Image::make_view(VkImageAspectFlags aspects, VkImageViewType type, unsigned first_layer,
+                             unsigned layers) const {
     const VkImageViewCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .image = image_,
-        .viewType = info_.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+        .viewType = type,
         .format = info_.format,
-        .subresourceRange = {aspects, 0, info_.mip_levels, 0, info_.layers}};
+        .subresourceRange = {aspects, 0, info_.mip_levels, first_layer, layers}};
     VkImageView view = VK_NULL_HANDLE;
     check(vkCreateImageView(device_->handle(), &info, nullptr, &view), "creating an image view");
     return view;
@@ -153,6 +162,8 @@ Image::~Image() {
     vkDestroyImageView(device_->handle(), view_, nullptr);
     vkDestroyImageView(device_->handle(), attachment_view_, nullptr);
     vkDestroyImageView(device_->handle(), stencil_view_, nullptr);
+    for (const VkImageView view : layer_views_)
+        vkDestroyImageView(device_->handle(), view, nullptr);
     vkDestroyImage(device_->handle(), image_, nullptr);
 }
 
@@ -166,6 +177,7 @@ Image& Image::operator=(Image&& other) noexcept {
     std::swap(view_, other.view_);
     std::swap(attachment_view_, other.attachment_view_);
     std::swap(stencil_view_, other.stencil_view_);
+    std::swap(layer_views_, other.layer_views_);
     std::swap(aspects_, other.aspects_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace gnomon::gpu {
 
@@ -82,6 +83,7 @@ struct ImageInfo {
     VkImageUsageFlags usage = 0;
     unsigned layers = 1;
     unsigned mip_levels = 1;
+    bool array = false;  ///< seen as an array, whatever its number of layers
 };
 
 class Image {
@@ -95,6 +97,8 @@ public:
     VkImage handle() const { return image_; }
     /// All layers and levels; depth only, for formats that have stencil too.
     VkImageView view() const { return view_; }
+    /// One layer of an array, as an attachment.
+    VkImageView layer_view(unsigned layer) const { return layer_views_[layer]; }
     /// Depth and stencil, as an attachment.
     VkImageView attachment_view() const { return attachment_view_; }
     /// Stencil only, to be sampled as unsigned integers.
@@ -109,12 +113,15 @@ public:
 
 private:
     VkImageView make_view(VkImageAspectFlags aspects) const;
+    VkImageView make_view(VkImageAspectFlags aspects, VkImageViewType type, unsigned first_layer,
+                          unsigned layers) const;
 
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
     VkImageView view_ = VK_NULL_HANDLE;
     VkImageView attachment_view_ = VK_NULL_HANDLE;
     VkImageView stencil_view_ = VK_NULL_HANDLE;
+    std::vector<VkImageView> layer_views_;
     VkImageAspectFlags aspects_ = 0;
     Memory memory_;
     ImageInfo info_;

@@ -31,6 +31,19 @@ std::vector<MeshRange> mesh_ranges(const Scene& scene) {
     return ranges;
 }
 
+/// Of a box that holds the instance.
+Box3 placed_bounds(const Instance& instance, const Box3& local) {
+    Box3 bounds;
+    if (local.empty()) return bounds;
+    for (unsigned i = 0; i < 8; ++i) {
+        const Vec3 corner((i & 1) != 0 ? local.max.x : local.min.x,
+                          (i & 2) != 0 ? local.max.y : local.min.y,
+                          (i & 4) != 0 ? local.max.z : local.min.z);
+        bounds.include(Vec3(instance.world_from_local * Vec4(corner, 1.0f)));
+    }
+    return bounds;
+}
+
 bool mirrors(const Instance& instance) {
     return glm::determinant(glm::mat3(instance.world_from_local)) < 0.0f;
 }
@@ -98,6 +111,12 @@ void GpuScene::place_instances(const gpu::Device& device) {
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
 
+    std::vector<Box3> local_bounds(scene_.meshes().size());
+    for (std::size_t m = 0; m < local_bounds.size(); ++m) {
+        for (const Vec3 p : scene_.meshes()[m].positions)
+            local_bounds[m].include(p);
+    }
+
     std::vector<shared::SceneInstance> placed;
     std::vector<std::uint32_t> slots(instances.size());
     for (const std::uint32_t i : order_) {
@@ -106,6 +125,7 @@ void GpuScene::place_instances(const gpu::Device& device) {
         const MeshRange range = ranges[instance.mesh];
         const auto slot = static_cast<std::uint32_t>(placed.size());
         slots[i] = slot;
+        bounds_.push_back(placed_bounds(instance, local_bounds[instance.mesh]));
         placed.push_back({glm::mat4x3(instance.world_from_local), i, range.first_index,
                           range.first_vertex, mesh.material});
         if (mesh.triangles.empty()) continue;

@@ -30,6 +30,8 @@ public:
     const std::vector<Draw>& draws() const { return draws_; }
     /// The index into Scene::instances() of a slot of the instance buffer.
     std::uint32_t instance_at(std::uint32_t slot) const { return order_[slot]; }
+    /// Of the instance in a slot.
+    const Box3& bounds_ws(std::uint32_t slot) const { return bounds_[slot]; }
     const gpu::Buffer& positions() const { return positions_; }
     const gpu::Buffer& indices() const { return indices_; }
     const gpu::Buffer& instances() const { return instances_; }
@@ -50,6 +52,7 @@ private:
     Scene scene_;
     std::vector<Draw> draws_;
     std::vector<std::uint32_t> order_;
+    std::vector<Box3> bounds_;  // by slot
     gpu::Buffer positions_, indices_, attributes_, instances_, slots_, materials_;
     std::vector<gpu::Image> textures_;    // Scene::textures() and, last, white
     std::vector<gpu::Sampler> samplers_;  // one for each of them

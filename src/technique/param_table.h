@@ -32,8 +32,11 @@ public:
         std::function<void(Options&, const ParamValue&)> set;
     };
 
-    ParamTable(std::string_view technique, std::initializer_list<Row> rows)
+    /// `more` come after `rows`: those of a group of techniques.
+    ParamTable(std::string_view technique, std::initializer_list<Row> rows,
+               const std::vector<Row>& more = {})
         : technique_(technique), rows_(rows) {
+        rows_.insert(rows_.end(), more.begin(), more.end());
         for (const Row& row : rows_)
             infos_.push_back(row.info);
     }

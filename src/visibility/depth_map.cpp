@@ -47,52 +47,74 @@ DepthMap::DepthMap(const gpu::Device& device)
       masked_(caster_pipeline(device, true)) {}
 
 void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
-                      const Mat4& clip_from_world, unsigned size_texels, bool ignore_alpha) {
-    make_image(size_texels);
-    place_instances(commands, scene, clip_from_world);
+                      std::span<const MapLayer> layers, bool ignore_alpha) {
+    make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()));
+    clip_from_local_.clear();
+    triangles_ = 0;
+    std::vector<std::vector<CasterDraw>> draws;
+    for (const MapLayer& layer : layers)
+        draws.push_back(place_casters(scene, layer));
+    upload_matrices(commands, scene.scene().instances().size() * layers.size());
     commands.use(image_, gpu::Use::depth_target);
-    commands.begin_drawing({.depth = &image_, .size = image_.size()});
-    draw(commands, scene, ignore_alpha);
-    commands.end_drawing();
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        commands.begin_drawing(
+            {.depth = &image_, .depth_layer = static_cast<int>(i), .size = image_.size()});
+        draw(commands, scene, draws[i], ignore_alpha);
+        commands.end_drawing();
+    }
     commands.use(image_, gpu::Use::sampled);
 }
 
-void DepthMap::make_image(unsigned size_texels) {
+void DepthMap::make_image(unsigned size_texels, unsigned layers) {
     const Extent size{size_texels, size_texels};
-    if (image_ && image_.size() == size) return;
-    image_ = gpu::Image(device_, {.size = size,
-                                  .format = kDepthMapFormat,
-                                  .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                           VK_IMAGE_USAGE_SAMPLED_BIT});
+    if (image_ && image_.size() == size && image_.info().layers == layers) return;
+    image_ = gpu::Image(
+        device_, {.size = size,
+                  .format = kDepthMapFormat,
+                  .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                  .layers = layers,
+                  .array = true});
 }
 
-void DepthMap::place_instances(gpu::Commands& commands, const raster::GpuScene& scene,
-                               const Mat4& clip_from_world) {
-    const std::vector<Instance>& instances = scene.scene().instances();
-    clip_from_local_.resize(instances.size());
-    const glm::dmat4 from_world(clip_from_world);
-    for (std::uint32_t slot = 0; slot < instances.size(); ++slot) {
-        const Mat4& world_from_local = instances[scene.instance_at(slot)].world_from_local;
-        clip_from_local_[slot] = Mat4(from_world * glm::dmat4(world_from_local));
+std::vector<DepthMap::CasterDraw> DepthMap::place_casters(const raster::GpuScene& scene,
+                                                          const MapLayer& layer) {
+    const glm::dmat4 from_world(layer.fit.clip_from_world);
+    std::vector<CasterDraw> draws;
+    for (const raster::Draw& draw : scene.draws()) {
+        const auto first = static_cast<std::uint32_t>(clip_from_local_.size());
+        for (std::uint32_t slot = draw.first_slot; slot < draw.first_slot + draw.slot_count;
+             ++slot) {
+            if (!layer.casters.holds(scene.bounds_ws(slot))) continue;
+            const Instance& instance = scene.scene().instances()[scene.instance_at(slot)];
+            clip_from_local_.emplace_back(from_world * glm::dmat4(instance.world_from_local));
+        }
+        const auto count = static_cast<std::uint32_t>(clip_from_local_.size()) - first;
+        if (count > 0) draws.push_back({&draw, first, count});
+        triangles_ += std::uint64_t{count} * draw.index_count / 3;
     }
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(clip_from_local_));
-    if (!instance_matrices_ || instance_matrices_.size_bytes() < bytes.size()) {
+    return draws;
+}
+
+void DepthMap::upload_matrices(gpu::Commands& commands, std::size_t most) {
+    if (!instance_matrices_ || instance_matrices_.size_bytes() < most * sizeof(Mat4)) {
         instance_matrices_ =
-            gpu::Buffer(device_, bytes.size(),
+            gpu::Buffer(device_, most * sizeof(Mat4),
                         VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                         gpu::Placement::device);
     }
-    commands.update(instance_matrices_, bytes, gpu::Use::vertex_read);
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(clip_from_local_));
+    if (!bytes.empty()) commands.update(instance_matrices_, bytes, gpu::Use::vertex_read);
 }
 
 void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene,
-                    bool ignore_alpha) const {
+                    std::span<const CasterDraw> draws, bool ignore_alpha) const {
     const std::array buffers{scene.positions().handle(), instance_matrices_.handle()};
     const std::array<VkDeviceSize, 2> offsets{};
     vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers.data(), offsets.data());
     vkCmdBindIndexBuffer(commands.handle(), scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
     const gpu::Pipeline* bound = nullptr;
-    for (const raster::Draw& draw : scene.draws()) {
+    for (const CasterDraw& caster : draws) {
+        const raster::Draw& draw = *caster.draw;
         if (draw.masked && !ignore_alpha) {
             commands.bind(
                 masked_, {gpu::StorageBuffer{&scene.attributes()},
@@ -103,8 +125,9 @@ void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene,
             commands.bind(opaque_, {});
             bound = &opaque_;
         }
-        vkCmdDrawIndexed(commands.handle(), draw.index_count, draw.slot_count, draw.first_index,
-                         static_cast<std::int32_t>(draw.first_vertex), draw.first_slot);
+        vkCmdDrawIndexed(commands.handle(), draw.index_count, caster.instance_count,
+                         draw.first_index, static_cast<std::int32_t>(draw.first_vertex),
+                         caster.first_instance);
     }
 }
 

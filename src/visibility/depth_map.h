@@ -2,37 +2,59 @@
 
 #include "gpu/commands.h"
 #include "raster/gpu_scene.h"
+#include "visibility/caster_volume.h"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gnomon {
 
-/// A square depth map: D32, reversed, so that 1 is nearest to the light and 0 is nothing.
+/// One layer of a map: what it shows, and which casters are worth drawing into it.
+struct MapLayer {
+    LightFit fit;
+    CasterVolume casters;
+};
+
+/// A depth map of one or more square layers: D32, reversed, so that 1 is nearest to the light and 0
+/// is nothing.
 class DepthMap {
 public:
     explicit DepthMap(const gpu::Device& device);
 
-    /// Draws all casters, both sides, alpha masks honoured unless `ignore_alpha`; casters nearer
-    /// than the near plane are clamped to it. The map is ready to be sampled afterwards.
-    void record(gpu::Commands& commands, const raster::GpuScene& scene, const Mat4& clip_from_world,
-                unsigned size_texels, bool ignore_alpha);
+    /// Draws the casters of each layer, both sides, alpha masks honoured unless `ignore_alpha`;
+    /// casters nearer than the near plane are clamped to it. The layers have one size. The map is
+    /// ready to be sampled afterwards, as an array.
+    void record(gpu::Commands& commands, const raster::GpuScene& scene,
+                std::span<const MapLayer> layers, bool ignore_alpha);
 
     const gpu::Image& image() const { return image_; }
     std::uint64_t memory_bytes() const {
         return image_.memory_bytes() + instance_matrices_.memory_bytes();
     }
+    /// Of the last record(), over all layers.
+    std::uint64_t triangles() const { return triangles_; }
 
 private:
-    void make_image(unsigned size_texels);
-    void place_instances(gpu::Commands& commands, const raster::GpuScene& scene,
-                         const Mat4& clip_from_world);
-    void draw(gpu::Commands& commands, const raster::GpuScene& scene, bool ignore_alpha) const;
+    /// Instances of one mesh, one after the other in the buffer of matrices.
+    struct CasterDraw {
+        const raster::Draw* draw;
+        std::uint32_t first_instance, instance_count;
+    };
+
+    void make_image(unsigned size_texels, unsigned layers);
+    std::vector<CasterDraw> place_casters(const raster::GpuScene& scene, const MapLayer& layer);
+    /// `most`: how many there can be in any frame of this scene.
+    void upload_matrices(gpu::Commands& commands, std::size_t most);
+    void draw(gpu::Commands& commands, const raster::GpuScene& scene,
+              std::span<const CasterDraw> draws, bool ignore_alpha) const;
 
     const gpu::Device& device_;
     gpu::Pipeline opaque_, masked_;
     gpu::Image image_;
-    std::vector<Mat4> clip_from_local_;  // by slot, for one frame; kept for its memory
+    std::vector<Mat4> clip_from_local_;  // of the casters of all layers
     gpu::Buffer instance_matrices_;
+    std::uint64_t triangles_ = 0;
 };
 
 }  // namespace gnomon

@@ -73,13 +73,13 @@ std::array<DVec3, 8> box_corners(const Box3& box, double grow_m) {
     return corners;
 }
 
-/// Corners of the frustum between the near plane and `far_m`.
-std::array<DVec3, 8> frustum_corners(const Camera& camera, Extent size, double far_m) {
+/// Corners of the part of the frustum between two distances.
+std::array<DVec3, 8> frustum_corners(const Camera& camera, Extent size, DepthRange range) {
     const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(camera.view_from_world));
     const double aspect = static_cast<double>(size.width) / size.height;
     std::array<DVec3, 8> corners;
     for (unsigned i = 0; i < 8; ++i) {
-        const double distance_m = (i & 4) != 0 ? far_m : static_cast<double>(camera.near_m);
+        const double distance_m = (i & 4) != 0 ? range.far_m : range.near_m;
         const double half_y = camera.ortho_height_m > 0.0f
                                   ? 0.5 * camera.ortho_height_m
                                   : distance_m * std::tan(0.5 * camera.fov_y_rad);
@@ -88,6 +88,17 @@ std::array<DVec3, 8> frustum_corners(const Camera& camera, Extent size, double f
         corners[i] = DVec3(world_from_view * p_vs);
     }
     return corners;
+}
+
+/// `range` cut to where the camera and the box are; empty (far <= near) when it does not see it.
+DepthRange range_within(const Camera& camera, const std::array<DVec3, 8>& box, DepthRange range) {
+    double farthest_m = 0.0;
+    for (const DVec3& corner : box) {
+        farthest_m =
+            std::max(farthest_m, -(glm::dmat4(camera.view_from_world) * DVec4(corner, 1.0)).z);
+    }
+    return {std::max(range.near_m, static_cast<double>(camera.near_m)),
+            std::min(range.far_m, farthest_m)};
 }
 
 /// Boxes without thickness (a flat ground) get some, relative to their size, so that planes are
@@ -101,16 +112,14 @@ glm::dmat4 light_from_world(const DVec3& to_light, const DVec3& eye) {
 
 }  // namespace
 
-std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds) {
+std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds,
+                                   DepthRange range) {
     if (bounds.empty()) return {};
     const double grow_m = kGrowth * std::max(bounds.diagonal(), 1e-3f);
     const std::array<DVec3, 8> box = box_corners(bounds, grow_m);
-    double far_m = 0.0;
-    for (const DVec3& corner : box) {
-        far_m = std::max(far_m, -(glm::dmat4(camera.view_from_world) * DVec4(corner, 1.0)).z);
-    }
-    if (far_m <= camera.near_m) return {};
-    const std::array<DVec3, 8> frustum = frustum_corners(camera, size, far_m);
+    range = range_within(camera, box, range);
+    if (range.far_m <= range.near_m) return {};
+    const std::array<DVec3, 8> frustum = frustum_corners(camera, size, range);
 
     std::vector<DVec3> corners;
     const auto add = [&](const std::array<DVec3, 8>& from, const std::array<DVec3, 8>& by) {
@@ -126,18 +135,47 @@ std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3
     return corners;
 }
 
-float LightFit::texel_size_m(Vec3 p_ws) const {
-    return perspective ? texel_m * std::max(0.0f, glm::dot(p_ws - eye_ws, axis_ws)) : texel_m;
+std::vector<DVec4> visible_planes(const Camera& camera, Extent size, const Box3& bounds,
+                                  DepthRange range) {
+    if (bounds.empty()) return {};
+    range = range_within(camera, box_corners(bounds, 0.0), range);
+    if (range.far_m <= range.near_m) return {};
+    std::vector<DVec4> result = planes(frustum_corners(camera, size, range));
+    for (int axis = 0; axis < 3; ++axis) {
+        DVec4 from_below(0.0);
+        from_below[axis] = 1.0;
+        result.push_back(from_below - DVec4(0.0, 0.0, 0.0, bounds.min[axis]));
+        result.push_back(DVec4(0.0, 0.0, 0.0, bounds.max[axis]) - from_below);
+    }
+    return result;
 }
 
-LightFit fit_directional(const DirectionalLight& light, const Camera& camera, Extent size,
+// A step across the light moves the map's image by the 2x3 matrix of the gradients of its
+// coordinates; the step that moves it least for its length is one along the longer side of a texel,
+// and by how much is the matrix's smaller singular value.
+float LightFit::texel_size_m(Vec3 p_ws) const {
+    const glm::dmat4 rows = glm::transpose(glm::dmat4(clip_from_world));
+    const DVec4 p(DVec3(p_ws), 1.0);
+    const double w = glm::dot(rows[3], p);
+    if (!(w > 0.0)) return 0.0f;
+    const double scale = 0.5 * size_texels / w;
+    const DVec3 u = scale * DVec3(rows[0] - glm::dot(rows[0], p) / w * rows[3]);
+    const DVec3 v = scale * DVec3(rows[1] - glm::dot(rows[1], p) / w * rows[3]);
+    const double mean = 0.5 * (glm::dot(u, u) + glm::dot(v, v));
+    const double difference = std::hypot(0.5 * (glm::dot(u, u) - glm::dot(v, v)), glm::dot(u, v));
+    // The product of both singular values is exact where their difference would not be.
+    const DVec3 product = glm::cross(u, v);
+    return static_cast<float>(std::sqrt((mean + difference) / glm::dot(product, product)));
+}
+
+LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> receivers_ws,
                          const Box3& bounds, unsigned size_texels, float margin_texels) {
     const DVec3 to_light = glm::normalize(DVec3(light.to_light_ws));
     const DVec3 center = bounds.empty() ? DVec3(0.0) : DVec3(bounds.center());
     const glm::dmat4 view = light_from_world(to_light, center);
 
     DVec3 low(1e30), high(-1e30);
-    for (const DVec3& corner : visible_corners(camera, size, bounds)) {
+    for (const DVec3& corner : receivers_ws) {
         const DVec3 p(view * DVec4(corner, 1.0));
         low = glm::min(low, p);
         high = glm::max(high, p);
@@ -165,7 +203,7 @@ LightFit fit_directional(const DirectionalLight& light, const Camera& camera, Ex
                     1.0 - high.z / depth_m, 1.0);
     LightFit fit;
     fit.clip_from_world = Mat4(clip * view);
-    fit.texel_m = static_cast<float>(texel_m);
+    fit.size_texels = size_texels;
     return fit;
 }
 
@@ -192,10 +230,8 @@ LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texe
     clip[2][3] = -1.0;
     LightFit fit;
     fit.clip_from_world = Mat4(clip * view);
-    fit.texel_m = static_cast<float>(2.0 * half / size_texels);
-    fit.eye_ws = light.position_ws;
-    fit.axis_ws = Vec3(axis);
-    fit.perspective = true;
+    fit.size_texels = size_texels;
+    fit.affine = false;
     return fit;
 }
 

@@ -2,30 +2,44 @@
 
 #include <gnomon/scene.h>
 
+#include <glm/ext/vector_double4.hpp>
+
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace gnomon {
 
-/// Corners of the part of `bounds` that the camera sees: a convex polytope, empty when it sees
-/// none. All receivers of the frame lie within it.
-std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds);
+/// Distances from the camera, along its axis, between which something is of interest.
+struct DepthRange {
+    double near_m = 0.0;
+    double far_m = std::numeric_limits<double>::infinity();
+};
 
-/// A light's map: where its texels are.
+/// Corners of the part of `bounds` that the camera sees between two distances: a convex polytope,
+/// empty when it sees none. All receivers of the frame that are so far lie within it.
+std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds,
+                                   DepthRange range = {});
+
+/// Planes (unit normal inwards, offset) around the same part of `bounds`; none when it is empty.
+std::vector<glm::dvec4> visible_planes(const Camera& camera, Extent size, const Box3& bounds,
+                                       DepthRange range = {});
+
+/// A light's square map: where its texels are.
 struct LightFit {
     Mat4 clip_from_world{1.0f};  ///< reversed Z: 1 nearest to the light
-    float texel_m = 0.0f;        ///< side of a texel; of perspective maps at 1 m along the axis
-    Vec3 eye_ws{0.0f};           ///< perspective maps: the light
-    Vec3 axis_ws{0.0f};          ///< perspective maps: unit vector into the map
-    bool perspective = false;
+    unsigned size_texels = 1;    ///< of a side
+    bool affine = true;          ///< all texels are of one size
 
-    /// Side of a texel at a point of the world, in metres.
+    /// Side of a texel at a point of the world, in metres, across the light; the longer one where
+    /// the map stretches it. 0 behind a light.
     float texel_size_m(Vec3 p_ws) const;
 };
 
-/// A square map of `size_texels` whose texels cover what the camera sees of the scene and
-/// `margin_texels` around it, with every caster between its near and far planes. W. Reeves et al.,
-/// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987, fitted to receivers.
-LightFit fit_directional(const DirectionalLight& light, const Camera& camera, Extent size,
+/// A map whose texels cover `receivers_ws` and `margin_texels` around them, with every caster of
+/// the scene of these `bounds` between its near and far planes. W. Reeves et al., "Rendering
+/// Antialiased Shadows with Depth Maps", SIGGRAPH 1987, fitted to receivers.
+LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> receivers_ws,
                          const Box3& bounds, unsigned size_texels, float margin_texels);
 
 /// A square map around a spot's cone. Throws Error{input} when the cone is wider than 160°.

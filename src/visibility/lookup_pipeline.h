@@ -18,6 +18,7 @@ public:
     LookupPipeline(const gpu::Device& device, gpu::ComputePipelineInfo info);
 
     const gpu::Pipeline& of(const Light& light);
+    explicit operator bool() const { return device_ != nullptr; }
 
 private:
     const gpu::Device* device_ = nullptr;

@@ -1,0 +1,35 @@
+#include "technique/map_technique.h"
+
+namespace gnomon {
+
+MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options)
+    : GpuTechnique(context, info),
+      options_(options),
+      map_(context.impl().device()),
+      lookup_(context.impl().device(), options.filter, options) {}
+
+void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
+                          gpu::Image& visibility) {
+    std::vector<MapLayer> drawn;
+    layers_.clear();
+    for (const PlannedLayer& layer : plan(input.frame)) {
+        drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume()});
+        layers_.push_back(layer.lookup);
+    }
+    {
+        const gpu::Pass pass(commands, "depth");
+        map_.record(commands, input.scene, drawn, input.frame.ignore_alpha);
+    }
+    const gpu::Pass pass(commands, "lookup");
+    lookup_.record(commands, input.receivers, input.frame.light, layers_, map_.image(), visibility);
+}
+
+void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {
+    out.set_texels(
+        [layers = layers_, camera = frame.camera](Vec3 p_ws) {
+            return layers[layer_of(layers, camera, p_ws)].fit.texel_size_m(p_ws);
+        },
+        filter_radius_texels(options_.filter), frame);
+}
+
+}  // namespace gnomon

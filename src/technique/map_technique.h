@@ -1,0 +1,72 @@
+#pragma once
+
+#include "technique/param_table.h"
+#include "technique/technique_base.h"
+#include "visibility/map_lookup.h"
+
+#include <concepts>
+#include <vector>
+
+namespace gnomon {
+
+/// What all techniques with depth maps leave open to their users.
+struct MapOptions : BiasOptions {
+    int map_size = 2048;
+    MapFilter filter = MapFilter::box_4x4;
+    bool cull_casters = true;
+
+    /// Texels around what receivers need: what the filter reads, and one for receivers that the
+    /// bias moves across the border.
+    float margin_texels() const { return filter_radius_texels(filter) + 1.0f; }
+    unsigned size_texels() const { return static_cast<unsigned>(map_size); }
+};
+
+/// The rows of MapOptions, for the table of a technique whose options are derived from it.
+template <std::derived_from<MapOptions> Options>
+std::vector<typename ParamTable<Options>::Row> map_rows() {
+    return {
+        integer<Options>("map_size", &Options::map_size, 16, 16384, "texels", "side of a map"),
+        choice<Options, MapFilter>("filter", &Options::filter,
+                                   {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4"},
+                                   "how a map is read"),
+        number<Options>("bias_constant", &Options::bias_constant, 0.0, 100.0, "texels",
+                        "receivers are moved towards the light by this"),
+        number<Options>("bias_slope", &Options::bias_slope, 0.0, 16.0, "1",
+                        "and by this times the depth that their plane gains over the filter's "
+                        "reach"),
+        number<Options>("normal_offset", &Options::normal_offset, 0.0, 16.0, "1",
+                        "and off their surface by this times what frees a plane from the filter's "
+                        "reach"),
+        boolean<Options>("cull_casters", &Options::cull_casters,
+                         "casters whose shadow no receiver can meet are not drawn")};
+}
+
+/// One layer of a technique's map: where its texels are, which receivers look it up, and what can
+/// cast on them.
+struct PlannedLayer {
+    LookupLayer lookup;
+    CasterVolume casters;
+};
+
+/// A technique with a depth map: says where its texels go. Everything else is alike for all.
+class MapTechnique : public GpuTechnique {
+protected:
+    MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options);
+
+    /// The layers of the frame's map, in the order of their receivers' distance from the camera.
+    virtual std::vector<PlannedLayer> plan(const Frame& frame) const = 0;
+
+private:
+    void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) final;
+    void describe_texels(const Frame& frame, Visibility::Impl& out) final;
+    std::uint64_t memory_bytes() const final {
+        return map_.memory_bytes() + lookup_.memory_bytes();
+    }
+
+    MapOptions options_;
+    DepthMap map_;
+    MapLookup lookup_;
+    std::vector<LookupLayer> layers_;  // of the last frame
+};
+
+}  // namespace gnomon

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "visibility/light_fit.h"
+
+#include <glm/ext/vector_double4.hpp>
+
+#include <span>
+#include <vector>
+
+namespace gnomon {
+
+/// Where casters can be whose shadows meet a map's receivers: the receivers' convex polytope,
+/// extruded towards the light, within the sides of the map. P.-P. J. Sloan et al. and many engines
+/// cull so; the planes to keep are those of U. Assarsson and T. Möller, "Optimized View Frustum
+/// Culling Algorithms for Bounding Boxes", JGT 5(1), 2000, that do not face the light.
+class CasterVolume {
+public:
+    /// Everything is inside.
+    CasterVolume() = default;
+
+    /// Of a light so far away that all rays to it are `to_light_ws`. `planes_ws` bound the
+    /// receivers: (unit normal inwards, offset).
+    CasterVolume(const LightFit& fit, DVec3 to_light_ws, std::span<const glm::dvec4> planes_ws,
+                 double scene_size_m);
+    /// Of a light within the world.
+    explicit CasterVolume(const LightFit& fit);
+
+    /// False only when nothing in the box can cast a shadow into the map.
+    bool holds(const Box3& box_ws) const;
+
+private:
+    void add_sides(const LightFit& fit);
+
+    std::vector<glm::dvec4> planes_;
+    double touching_m_ = 0.0;  ///< casters that reach no farther in than this only touch
+};
+
+}  // namespace gnomon

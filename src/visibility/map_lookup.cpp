@@ -1,0 +1,104 @@
+#include "visibility/map_lookup.h"
+
+#include "map_lookup.comp.spv.h"
+#include "visibility/light_shape.h"
+
+#include <glm/ext/matrix_double4x4.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+
+namespace gnomon {
+
+namespace {
+
+constexpr unsigned kGroupSize = 8;
+
+gpu::ComputePipelineInfo lookup_info(MapFilter filter, std::size_t layers, bool affine) {
+    using enum gpu::BindingType;
+    return {.code = shaders::map_lookup_comp,
+            .layout = {{texture, storage_image, storage_image, texture, texture, uniform_buffer},
+                       sizeof(shared::ReceiverPush)},
+            .constants = {static_cast<std::uint32_t>(filter), static_cast<std::uint32_t>(layers),
+                          affine ? 1u : 0u}};
+}
+
+}  // namespace
+
+float filter_radius_texels(MapFilter filter) {
+    constexpr float kRadii[] = {0.5f, 1.0f, 1.5f, 2.0f, 2.5f};
+    return kRadii[static_cast<std::size_t>(filter)];
+}
+
+// A filter of several texels passes over the outermost part of its reach, which has little weight;
+// of few taps over less.
+float deciding_reach_texels(MapFilter filter) {
+    constexpr float kDecidingShares[] = {1.0f, 0.75f, 0.75f, 0.75f, 0.8f};
+    return std::sqrt(2.0f) * kDecidingShares[static_cast<std::size_t>(filter)] *
+           filter_radius_texels(filter);
+}
+
+float depth_at(const Camera& camera, Extent size, double distance_m) {
+    const glm::dvec4 p =
+        glm::dmat4(camera.clip_from_view(size)) * glm::dvec4(0.0, 0.0, -distance_m, 1.0);
+    return static_cast<float>(p.z / p.w);
+}
+
+std::size_t layer_of(std::span<const LookupLayer> layers, const Camera& camera, Vec3 p_ws) {
+    const double distance_m = -(camera.view_from_world * Vec4(p_ws, 1.0f)).z;
+    const auto after = std::ranges::find_if(
+        layers.subspan(1), [&](const LookupLayer& layer) { return distance_m <= layer.from_m; });
+    return static_cast<std::size_t>(std::distance(layers.subspan(1).begin(), after));
+}
+
+MapLookup::MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias)
+    : device_(device),
+      filter_(filter),
+      bias_{.reach_texels = deciding_reach_texels(filter),
+            .constant = static_cast<float>(bias.bias_constant),
+            .slope = static_cast<float>(bias.bias_slope),
+            .normal_offset = static_cast<float>(bias.normal_offset)},
+      nearest_(device, {}),
+      compare_(device, {.filter = VK_FILTER_LINEAR, .compare = true}),
+      frame_(device, sizeof(shared::MapFrame),
+             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+             gpu::Placement::device) {}
+
+LookupPipeline& MapLookup::pipeline(std::size_t layers, bool affine) {
+    LookupPipeline& pipeline = pipelines_[layers][affine ? 1 : 0];
+    if (!pipeline) pipeline = LookupPipeline(device_, lookup_info(filter_, layers, affine));
+    return pipeline;
+}
+
+void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receivers,
+                       const Light& light, std::span<const LookupLayer> layers,
+                       const gpu::Image& map, gpu::Image& visibility) {
+    assert(!layers.empty() && layers.size() <= shared::kMaxMapLayers);
+    shared::MapFrame frame{};
+    frame.bias = bias_;
+    frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const LightFit& fit = layers[i].fit;
+        frame.layers[i] = {
+            .clip_from_world = fit.clip_from_world,
+            .texel_m = fit.affine ? fit.texel_size_m(Vec3(0.0f)) : 0.0f,
+            .first_depth =
+                i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m)};
+    }
+    commands.update(frame_, frame);
+    commands.use(visibility, gpu::Use::storage_write);
+    const bool affine =
+        std::ranges::all_of(layers, [](const LookupLayer& layer) { return layer.fit.affine; });
+    const gpu::Pipeline& lookup = pipeline(layers.size(), affine).of(light);
+    commands.bind(
+        lookup, {gpu::Texture{receivers.depth.view(), &nearest_},
+                 gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},
+                 gpu::Texture{map.view(), &compare_}, gpu::Texture{map.view(), &nearest_},
+                 gpu::UniformBuffer{&frame_}});
+    commands.push(lookup, receiver_push(receivers, light));
+    commands.dispatch(receivers.size, kGroupSize);
+}
+
+}  // namespace gnomon

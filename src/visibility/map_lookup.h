@@ -1,0 +1,64 @@
+#pragma once
+
+#include "raster/receivers.h"
+#include "visibility/depth_map.h"
+#include "visibility/lookup_pipeline.h"
+#include "visibility/map_lookup.shared.h"
+
+#include <span>
+#include <vector>
+
+namespace gnomon {
+
+/// How a depth map is read, in the order of kFilterNearest, ...: map_filter.glsl.
+enum class MapFilter { nearest, hardware_2x2, box_3x3, box_4x4, dithered_4 };
+
+/// How far from the receiver the filter's outermost texels end, in texels along an axis.
+float filter_radius_texels(MapFilter filter);
+/// How far from the receiver a texel's centre may lie and still decide between light and shadow.
+float deciding_reach_texels(MapFilter filter);
+
+/// By how much receivers are moved before they are looked up: MapBias.
+struct BiasOptions {
+    double bias_constant = 0.1;
+    // A plane is free of acne when bias_slope + normal_offset is 1. Two thirds of it as an offset
+    // spare thin casters, one third along the light spares corners.
+    double bias_slope = 0.33;
+    double normal_offset = 0.67;
+};
+
+/// A layer of a map as receivers choose it.
+struct LookupLayer {
+    LightFit fit;
+    double from_m = 0.0;  ///< receivers that are nearer to the camera look in the layer before
+};
+
+/// The number in the picture's depth buffer at a distance along the camera's axis.
+float depth_at(const Camera& camera, Extent size, double distance_m);
+/// Which layer a point is looked up in.
+std::size_t layer_of(std::span<const LookupLayer> layers, const Camera& camera, Vec3 p_ws);
+
+/// Compares receivers with a depth map. Between one and kMaxMapLayers layers, in the order of their
+/// distance from the camera; what lies outside of its layer is lit.
+class MapLookup {
+public:
+    MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias);
+
+    void record(gpu::Commands& commands, const raster::Receivers& receivers, const Light& light,
+                std::span<const LookupLayer> layers, const gpu::Image& map, gpu::Image& visibility);
+
+    std::uint64_t memory_bytes() const { return frame_.memory_bytes(); }
+
+private:
+    LookupPipeline& pipeline(std::size_t layers, bool affine);
+
+    const gpu::Device& device_;
+    MapFilter filter_;
+    shared::MapBias bias_;
+    /// For each number of layers, of maps that are affine and that are not.
+    std::array<std::array<LookupPipeline, 2>, shared::kMaxMapLayers + 1> pipelines_;
+    gpu::Sampler nearest_, compare_;
+    gpu::Buffer frame_;
+};
+
+}  // namespace gnomon
