@@ -203,6 +203,47 @@ TEST_F(LightPictureTest, MultipliesColorsOfMaterialTextureAndVertices) {
         EXPECT_NEAR(at(image, 2, 2)[c], shown(expected)[c], 1.0f / 255.0f) << c;
 }
 
+/// The wall as `cells` x `cells` squares, with the stripes of a texture, which is magnified.
+SceneData striped_wall(unsigned cells) {
+    SceneData data = wall_data();
+    data.materials[0].base_color = Vec4(1.0f);
+    data.materials[0].base_color_texture = 0;
+    Texture stripes{.name = "stripes", .size = {8, 8}, .rgba = {}};
+    for (unsigned i = 0; i < 64; ++i) {
+        const std::uint8_t value = i % 2 == 0 ? 40 : 220;
+        stripes.rgba.insert(stripes.rgba.end(), {value, value, value, 255});
+    }
+    data.textures.push_back(stripes);
+    Mesh& mesh = data.meshes[0];
+    mesh = {};
+    for (unsigned y = 0; y <= cells; ++y) {
+        for (unsigned x = 0; x <= cells; ++x) {
+            const Vec2 uv = Vec2(x, y) / static_cast<float>(cells);
+            mesh.positions.emplace_back(4.0f * uv - 2.0f, 0.0f);
+            mesh.texcoords.push_back(uv);
+        }
+    }
+    for (unsigned y = 0; y < cells; ++y) {
+        for (unsigned x = 0; x < cells; ++x) {
+            const unsigned a = y * (cells + 1) + x;
+            mesh.triangles.push_back({a, a + 1, a + cells + 2});
+            mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
+        }
+    }
+    return data;
+}
+
+TEST_F(LightPictureTest, TexturesSmallTrianglesAsLargeOnes) {
+    // Triangles of less than two pixels: the level of detail must not depend on their edges.
+    const DirectionalLight light{.to_light_ws = {0, 0, 1}, .irradiance = Vec3(kPi)};
+    const Image large = picture(wall_frame(striped_wall(1)), light);
+    const Image small = picture(wall_frame(striped_wall(19)), light);
+    for (unsigned y = 0; y < kSize.height; ++y) {
+        for (unsigned x = 0; x < kSize.width; ++x)
+            EXPECT_NEAR(small.at(x, y), large.at(x, y), 3.0f / 255.0f) << x << ", " << y;
+    }
+}
+
 TEST_F(LightPictureTest, ShadesByTheNormalsOfTheVertices) {
     const Vec3 normal = normalize(Vec3(0.6f, 0.0f, 0.8f));
     for (const bool mirrored : {false, true}) {

@@ -19,8 +19,12 @@ layout(push_constant, scalar) uniform Push { ScenePush push; };
 void main() {
     SceneMaterial material = materials[push.material];
     vec2 uv = material_uv(material, texcoord);
-    albedo = vec4(material.base_color.rgb * texture(base_color, uv).rgb * color.rgb,
-                  material.specular);
+    // The level of detail from what was interpolated: lavapipe reads no buffers for the pixels beside the
+    // triangle, so that `uv` differs from them by anything.
+    vec3 texel = textureGrad(base_color, uv, material.uv_scale_rotation * dFdx(texcoord),
+                             material.uv_scale_rotation * dFdy(texcoord))
+                     .rgb;
+    albedo = vec4(material.base_color.rgb * texel * color.rgb, material.specular);
     float len = length(normal_ws);
     normal_gloss = vec4(len > 0.0 ? normal_ws / len : vec3(0.0), material.shininess);
 }
