@@ -3,6 +3,7 @@
 #include "fail.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -234,6 +235,16 @@ Vec3 KeyValues::color(std::string_view key, Range range, Vec3 otherwise) const {
     return value == nullptr ? otherwise : parse_color(label(key), *value, range);
 }
 
+namespace {
+
+/// "-o" and "--quiet" are, "-2.5" is not.
+bool is_flag(std::string_view arg) {
+    return arg.size() > 1 && arg[0] == '-' &&
+           (arg[1] == '-' || std::isalpha(static_cast<unsigned char>(arg[1])) != 0);
+}
+
+}  // namespace
+
 std::vector<ParamFlag> take_param_flags(std::vector<std::string>& args,
                                         bool (*is_switch)(const ParamFlag&)) {
     std::vector<ParamFlag> flags;
@@ -249,7 +260,7 @@ std::vector<ParamFlag> take_param_flags(std::vector<std::string>& args,
             continue;
         }
         if (!flag->value) {
-            const bool followed = i + 1 < args.size() && !args[i + 1].starts_with("--");
+            const bool followed = i + 1 < args.size() && !is_flag(args[i + 1]);
             const bool may_stand_alone = is_switch(*flag);
             if (followed && (!may_stand_alone || is_switch_value(args[i + 1]))) {
                 flag->value = args[++i];

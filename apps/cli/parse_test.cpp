@@ -244,7 +244,7 @@ TEST(ParamFlags, LeaveOtherArgumentsAlone) {
 
 TEST(ParamFlags, NeedAValue) {
     for (std::vector<std::string> args :
-         {std::vector<std::string>{"--t.size"}, {"--t.size", "--quiet"}}) {
+         {std::vector<std::string>{"--t.size"}, {"--t.size", "--quiet"}, {"--t.size", "-o", "x"}}) {
         expect_mentions(message_of([&] { take_param_flags(args, named_on); }),
                         {"--t.size", "value is missing"});
     }

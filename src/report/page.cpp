@@ -122,7 +122,7 @@ json time_parts(const TechniqueResult& result) {
 
 json error_table(const Comparison& error) {
     return {{{"kind", "false"},
-             {"meaning", "wrong by more than half"},
+             {"meaning", "lit where T < 0.1, dark where T > 0.9"},
              {"lit", short_percent(error.false_lit)},
              {"shadow", short_percent(error.false_shadow)}},
             {{"kind", "stray"},
