@@ -1,6 +1,7 @@
 #include "visibility/light_fit.h"
 
 #include "base/check.h"
+#include "visibility/smallest_rectangle.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/matrix_transform.hpp>
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace gnomon {
 
@@ -105,9 +108,63 @@ DepthRange range_within(const Camera& camera, const std::array<DVec3, 8>& box, D
 /// defined.
 constexpr double kGrowth = 1e-4;
 
+/// Least side of a map, and least part of its longer side that its shorter one is: what is thinner
+/// needs no finer texels.
+constexpr double kLeastMap_m = 1e-6;
+constexpr double kLeastAspect = 1e-3;
+
 glm::dmat4 light_from_world(const DVec3& to_light, const DVec3& eye) {
     const DVec3 up = std::abs(to_light.y) > 0.99 ? DVec3(0, 0, -1) : DVec3(0, 1, 0);
     return glm::lookAtRH(eye, eye - to_light, up);
+}
+
+/// Texels along a side between the margins.
+double used_texels(unsigned size_texels, float margin_texels) {
+    return std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
+}
+
+/// What a parallel map covers, across the light.
+struct Footprint {
+    glm::dmat4 light_from_world;
+    glm::dvec2 center;
+    glm::dvec2 axis;  ///< unit vector along `size_m.x`
+    glm::dvec2 size_m;
+};
+
+/// Heights towards the light of the lowest receiver and of the highest caster.
+struct CastersRange {
+    double low_m = 0.0, high_m = 0.0;
+};
+
+/// Of all that is in the scene.
+CastersRange casters_range(const glm::dmat4& view, const Box3& bounds) {
+    if (bounds.empty()) return {};
+    CastersRange range{std::numeric_limits<double>::infinity(),
+                       -std::numeric_limits<double>::infinity()};
+    for (const DVec3& corner : box_corners(bounds, kGrowth * bounds.diagonal())) {
+        const double height_m = (view * DVec4(corner, 1.0)).z;
+        range.low_m = std::min(range.low_m, height_m);
+        range.high_m = std::max(range.high_m, height_m);
+    }
+    return range;
+}
+
+LightFit parallel_fit(const Footprint& footprint, CastersRange range, unsigned size_texels,
+                      float margin_texels) {
+    const double used_share = used_texels(size_texels, margin_texels) / size_texels;
+    const glm::dvec2 scale = 2.0 * used_share / footprint.size_m;
+    const glm::dvec2 along = footprint.axis;
+    const double depth_m = std::max(range.high_m - range.low_m, kLeastAspect * footprint.size_m.x);
+    glm::dmat4 clip(1.0);
+    clip[0] = {scale.x * along.x, -scale.y * along.y, 0.0, 0.0};
+    clip[1] = {scale.x * along.y, scale.y * along.x, 0.0, 0.0};
+    clip[2][2] = 1.0 / depth_m;
+    clip[3] = DVec4(0.0, 0.0, 1.0 - range.high_m / depth_m, 1.0);
+    clip[3] -= DVec4(glm::dvec2(clip * DVec4(footprint.center, 0.0, 0.0)), 0.0, 0.0);
+    LightFit fit;
+    fit.clip_from_world = Mat4(clip * footprint.light_from_world);
+    fit.size_texels = size_texels;
+    return fit;
 }
 
 }  // namespace
@@ -168,43 +225,61 @@ float LightFit::texel_size_m(Vec3 p_ws) const {
     return static_cast<float>(std::sqrt((mean + difference) / glm::dot(product, product)));
 }
 
+TexelSteps LightFit::texel_steps() const {
+    const glm::dmat4 rows = glm::transpose(glm::dmat4(clip_from_world));
+    const DVec3 u = 0.5 * size_texels * DVec3(rows[0]);
+    const DVec3 v = 0.5 * size_texels * DVec3(rows[1]);
+    return {Vec3(u / glm::dot(u, u)), Vec3(v / glm::dot(v, v))};
+}
+
 LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> receivers_ws,
                          const Box3& bounds, unsigned size_texels, float margin_texels) {
     const DVec3 to_light = glm::normalize(DVec3(light.to_light_ws));
     const DVec3 center = bounds.empty() ? DVec3(0.0) : DVec3(bounds.center());
     const glm::dmat4 view = light_from_world(to_light, center);
 
-    DVec3 low(1e30), high(-1e30);
-    for (const DVec3& corner : receivers_ws) {
-        const DVec3 p(view * DVec4(corner, 1.0));
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    if (low.x > high.x) low = high = DVec3(0.0);  // nothing is seen: any map will do
-    // Casters reach from the scene's nearest point to the light down to the farthest receiver.
-    if (!bounds.empty()) {
-        for (const DVec3& corner : box_corners(bounds, kGrowth * bounds.diagonal())) {
-            high.z = std::max(high.z, (view * DVec4(corner, 1.0)).z);
-            low.z = std::min(low.z, (view * DVec4(corner, 1.0)).z);
-        }
-    }
-    const double side = std::max({high.x - low.x, high.y - low.y, 1e-6});
-    const double used_texels =
-        std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
-    const double texel_m = side / used_texels;
-    const double depth_m = std::max(high.z - low.z, texel_m);
+    std::vector<glm::dvec2> seen;
+    for (const DVec3& corner : receivers_ws)
+        seen.emplace_back(view * DVec4(corner, 1.0));
+    const Rectangle rectangle = smallest_rectangle(std::move(seen));
+    const double longest_m = std::max({rectangle.size.x, rectangle.size.y, kLeastMap_m});
+    const glm::dvec2 size_m = glm::max(rectangle.size, kLeastAspect * longest_m);
+    return parallel_fit({view, rectangle.center, rectangle.axis, size_m},
+                        casters_range(view, bounds), size_texels, margin_texels);
+}
 
-    glm::dmat4 clip(1.0);
-    const double scale = 2.0 / (texel_m * size_texels);
-    clip[0][0] = scale;
-    clip[1][1] = scale;
-    clip[2][2] = 1.0 / depth_m;
-    clip[3] = DVec4(-scale * 0.5 * (low.x + high.x), -scale * 0.5 * (low.y + high.y),
-                    1.0 - high.z / depth_m, 1.0);
-    LightFit fit;
-    fit.clip_from_world = Mat4(clip * view);
-    fit.size_texels = size_texels;
-    return fit;
+// The sphere depends on nothing but the camera's lens, so that neither turning nor moving changes
+// the size of the texels, and the centre is moved by whole texels only.
+LightFit fit_directional_stable(const DirectionalLight& light, const Camera& camera, Extent size,
+                                DepthRange range, const Box3& bounds, unsigned size_texels,
+                                float margin_texels) {
+    const DVec3 to_light = glm::normalize(DVec3(light.to_light_ws));
+    // The light's view does not move with the scene's bounds: these may change with an animation.
+    const glm::dmat4 view = light_from_world(to_light, DVec3(0.0));
+    const std::array<DVec3, 8> corners = frustum_corners(camera, size, range);
+    const DVec3 near_middle = 0.5 * (corners[0] + corners[3]);
+    const DVec3 far_middle = 0.5 * (corners[4] + corners[7]);
+    // The centre on the axis from which the near and far corners are equally far, or the far
+    // plane's middle when that is beyond it.
+    const double near2 = glm::dot(corners[0] - near_middle, corners[0] - near_middle);
+    const double far2 = glm::dot(corners[4] - far_middle, corners[4] - far_middle);
+    const double depth_m = std::max(range.far_m - range.near_m, kLeastMap_m);
+    const double along_m = std::clamp(0.5 * (depth_m + (far2 - near2) / depth_m), 0.0, depth_m);
+    const DVec3 center = near_middle + (far_middle - near_middle) * (along_m / depth_m);
+    const double radius_m = std::sqrt(
+        std::max(near2 + along_m * along_m, far2 + (depth_m - along_m) * (depth_m - along_m)));
+
+    // One texel more on each side for the rounding of the centre, and the radius rounded up, lest
+    // the last bits of the camera's matrix change the texels.
+    constexpr double kRadiusSteps = 1024.0;
+    const double step_m = std::exp2(std::floor(std::log2(radius_m))) / kRadiusSteps;
+    const double side_m = 2.0 * std::ceil(radius_m / step_m) * step_m;
+    const float margin = margin_texels + 1.0f;
+    const double texel_m = side_m / used_texels(size_texels, margin);
+    const glm::dvec2 middle(view * DVec4(center, 1.0));
+    const glm::dvec2 snapped = glm::floor(middle / texel_m + 0.5) * texel_m;
+    return parallel_fit({view, snapped, {1.0, 0.0}, glm::dvec2(side_m)},
+                        casters_range(view, bounds), size_texels, margin);
 }
 
 LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texels,

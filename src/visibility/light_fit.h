@@ -25,6 +25,11 @@ std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3
 std::vector<glm::dvec4> visible_planes(const Camera& camera, Extent size, const Box3& bounds,
                                        DepthRange range = {});
 
+/// From a texel to the next ones, in metres of the world, across the light.
+struct TexelSteps {
+    Vec3 u_ws{0.0f}, v_ws{0.0f};
+};
+
 /// A light's square map: where its texels are.
 struct LightFit {
     Mat4 clip_from_world{1.0f};  ///< reversed Z: 1 nearest to the light
@@ -34,13 +39,23 @@ struct LightFit {
     /// Side of a texel at a point of the world, in metres, across the light; the longer one where
     /// the map stretches it. 0 behind a light.
     float texel_size_m(Vec3 p_ws) const;
+    /// Of an affine map of a light at infinity.
+    TexelSteps texel_steps() const;
 };
 
 /// A map whose texels cover `receivers_ws` and `margin_texels` around them, with every caster of
-/// the scene of these `bounds` between its near and far planes. W. Reeves et al., "Rendering
-/// Antialiased Shadows with Depth Maps", SIGGRAPH 1987, fitted to receivers.
+/// the scene of these `bounds` between its near and far planes: the smallest rectangle that holds
+/// them across the light. W. Reeves et al., "Rendering Antialiased Shadows with Depth Maps",
+/// SIGGRAPH 1987, fitted to receivers.
 LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> receivers_ws,
                          const Box3& bounds, unsigned size_texels, float margin_texels);
+
+/// A map around the sphere around all of the camera's frustum in `range`, whose texels stay where
+/// they are in the world while the camera moves and turns: M. Valient, "Stable Rendering of
+/// Cascaded Shadow Maps", ShaderX6, 2008.
+LightFit fit_directional_stable(const DirectionalLight& light, const Camera& camera, Extent size,
+                                DepthRange range, const Box3& bounds, unsigned size_texels,
+                                float margin_texels);
 
 /// A square map around a spot's cone. Throws Error{input} when the cone is wider than 160°.
 LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texels,

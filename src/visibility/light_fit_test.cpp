@@ -267,10 +267,16 @@ TEST(FitDirectional, KnowsTheSizeOfItsTexels) {
         const RandomView view = random_view(random, i);
         const LightFit fit = fit_view(view);
         const Vec3 p = random.point(view.bounds.min, view.bounds.max);
-        const Vec3 across = normalize(glm::cross(view.light.to_light_ws, random.direction()));
         const float texel_m = fit.texel_size_m(p);
+        const TexelSteps steps = fit.texel_steps();
+        EXPECT_NEAR(texel_m / std::max(glm::length(steps.u_ws), glm::length(steps.v_ws)), 1.0,
+                    1e-5);
         // A hundred texels; the matrix and the direction are in float.
-        EXPECT_NEAR(texels_moved(fit, DVec3(p), 100.0 * texel_m * DVec3(across)), 100.0, 1e-3);
+        EXPECT_NEAR(texels_moved(fit, DVec3(p), 100.0 * DVec3(steps.u_ws)), 100.0, 1e-2);
+        EXPECT_NEAR(texels_moved(fit, DVec3(p), 100.0 * DVec3(steps.v_ws)), 100.0, 1e-2);
+        EXPECT_NEAR(glm::dot(steps.u_ws, steps.v_ws) / (texel_m * texel_m), 0.0, 1e-5);
+        const Vec3 across = normalize(glm::cross(view.light.to_light_ws, random.direction()));
+        EXPECT_GT(texels_moved(fit, DVec3(p), 100.0 * texel_m * DVec3(across)), 100.0 - 1e-2);
     }
 }
 

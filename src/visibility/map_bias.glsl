@@ -17,11 +17,11 @@ struct TexelAt {
     float offset_m;  // along the normal, that gains the depth that the plane gains over one texel
 };
 
-// Of a map whose texels are all alike: a plane at the angle a to the light gains texel * tan a of depth
-// over a texel, and moving along the normal by d gains d / cos a.
-TexelAt affine_texel(float texel_m, vec3 normal_ws, vec3 to_light) {
-    float cosine = dot(normal_ws, to_light);
-    return TexelAt(texel_m, texel_m * sqrt(max(0.0, 1.0 - cosine * cosine)));
+// Of a map whose texels are all alike: going a step u across the light, a plane of normal n falls behind
+// by n.u / cos a along the light, a the angle between light and normal, and moving by d along the normal
+// gains d / cos a.
+TexelAt affine_texel(vec3 u_ws, vec3 v_ws, float texel_m, vec3 normal_ws) {
+    return TexelAt(texel_m, length(vec2(dot(normal_ws, u_ws), dot(normal_ws, v_ws))));
 }
 
 // Of any map, by the gradients of its texel coordinates u, v and its depth z at a point of the world:

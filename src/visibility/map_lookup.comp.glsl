@@ -24,20 +24,25 @@ layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
 struct Layer {
     mat4 clip_from_world;
+    vec3 texel_u_ws;
+    vec3 texel_v_ws;
     float texel_m;
     float index;
 };
 
+Layer layer(uint i) {
+    return Layer(frame.layers[i].clip_from_world, frame.layers[i].texel_u_ws,
+                 frame.layers[i].texel_v_ws, frame.layers[i].texel_m, float(i));
+}
+
 // The last layer that begins before the receiver. Chosen value by value: constants are read for all
 // pixels at once, and an index that differs between them would be followed pixel by pixel.
 Layer layer_of(float depth) {
-    Layer layer = Layer(frame.layers[0].clip_from_world, frame.layers[0].texel_m, 0.0);
+    Layer last = layer(0u);
     for (uint i = 1u; i < kLayerCount; ++i) {
-        if (depth < frame.layers[i].first_depth) {
-            layer = Layer(frame.layers[i].clip_from_world, frame.layers[i].texel_m, float(i));
-        }
+        if (depth < frame.layers[i].first_depth) last = layer(i);
     }
-    return layer;
+    return last;
 }
 
 float lit_by_map(vec3 p_ws, Layer layer, uvec2 pixel) {
@@ -70,7 +75,8 @@ void main() {
         vec3 normal_ws = unpack_unit_vector(imageLoad(normals, ivec2(pixel)).x);
         vec3 to_light = normalize(to_light_ws(push.light, p_ws));
         Layer layer = layer_of(depth);
-        TexelAt texel = kAffine != 0u ? affine_texel(layer.texel_m, normal_ws, to_light)
+        TexelAt texel = kAffine != 0u ? affine_texel(layer.texel_u_ws, layer.texel_v_ws,
+                                                     layer.texel_m, normal_ws)
                                       : projective_texel(layer.clip_from_world, frame.size_texels,
                                                          p_ws, normal_ws);
         vec3 biased_ws = biased_position(p_ws, normal_ws, to_light, texel, frame.bias);

@@ -81,9 +81,12 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const LightFit& fit = layers[i].fit;
+        const TexelSteps steps = fit.affine ? fit.texel_steps() : TexelSteps{};
         frame.layers[i] = {
             .clip_from_world = fit.clip_from_world,
-            .texel_m = fit.affine ? fit.texel_size_m(Vec3(0.0f)) : 0.0f,
+            .texel_u_ws = steps.u_ws,
+            .texel_v_ws = steps.v_ws,
+            .texel_m = std::max(glm::length(steps.u_ws), glm::length(steps.v_ws)),
             .first_depth =
                 i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m)};
     }

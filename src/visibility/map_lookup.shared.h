@@ -27,8 +27,10 @@ struct MapBias {
 
 struct MapLayerFrame {
     mat4 clip_from_world;  // of the light, reversed Z
-    float texel_m;         // side of a texel of an affine map
-    float first_depth;     // the layer's receivers are not nearer than this depth of the picture
+    vec3 texel_u_ws;       // from a texel to the next, of an affine map
+    vec3 texel_v_ws;
+    float texel_m;      // the longer of both
+    float first_depth;  // the layer's receivers are not nearer than this depth of the picture
 };
 
 struct MapFrame {
