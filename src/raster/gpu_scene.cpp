@@ -8,10 +8,14 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace gnomon::raster {
 
 namespace {
+
+/// Triangles of a caster's cluster: few enough to follow the sides of a map, enough for a draw.
+constexpr std::uint32_t kClusterTriangles = 1024;
 
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
@@ -65,10 +69,16 @@ GpuScene::GpuScene(const gpu::Device& device, const Scene& scene) : scene_(scene
 void GpuScene::upload_meshes(const gpu::Device& device) {
     std::vector<Vec3> positions;
     std::vector<UVec3> triangles;
+    std::vector<UVec3> caster_triangles;
     std::vector<shared::VertexAttributes> attributes;
     for (const Mesh& mesh : scene_.meshes()) {
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         triangles.insert(triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
+        CasterMesh caster = caster_mesh(mesh, kClusterTriangles);
+        caster_triangles.insert(caster_triangles.end(), caster.triangles.begin(),
+                                caster.triangles.end());
+        caster.triangles = {};
+        casters_.push_back(std::move(caster));
         for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
             const Vec4 color = mesh.colors.empty() ? Vec4(1.0f) : mesh.colors[i];
             attributes.push_back({mesh.normals.empty() ? Vec3(0.0f) : mesh.normals[i],
@@ -78,6 +88,8 @@ void GpuScene::upload_meshes(const gpu::Device& device) {
     }
     positions_ = storage(device, positions, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     indices_ = storage(device, triangles, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    caster_indices_ = gpu::make_buffer(device, std::span<const UVec3>(caster_triangles),
+                                       VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     attributes_ = storage(device, attributes);
 }
 
@@ -111,12 +123,6 @@ void GpuScene::place_instances(const gpu::Device& device) {
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
 
-    std::vector<Box3> local_bounds(scene_.meshes().size());
-    for (std::size_t m = 0; m < local_bounds.size(); ++m) {
-        for (const Vec3 p : scene_.meshes()[m].positions)
-            local_bounds[m].include(p);
-    }
-
     std::vector<shared::SceneInstance> placed;
     std::vector<std::uint32_t> slots(instances.size());
     for (const std::uint32_t i : order_) {
@@ -125,7 +131,6 @@ void GpuScene::place_instances(const gpu::Device& device) {
         const MeshRange range = ranges[instance.mesh];
         const auto slot = static_cast<std::uint32_t>(placed.size());
         slots[i] = slot;
-        bounds_.push_back(placed_bounds(instance, local_bounds[instance.mesh]));
         placed.push_back({glm::mat4x3(instance.world_from_local), i, range.first_index,
                           range.first_vertex, mesh.material});
         if (mesh.triangles.empty()) continue;
@@ -137,14 +142,26 @@ void GpuScene::place_instances(const gpu::Device& device) {
                               .index_count = static_cast<std::uint32_t>(3 * mesh.triangles.size()),
                               .first_vertex = range.first_vertex,
                               .first_slot = slot,
+                              .first_part = static_cast<std::uint32_t>(parts_.size()),
                               .masked = material.masked(),
                               .double_sided = material.double_sided,
                               .mirrored = mirrors(instance)});
         }
         ++draws_.back().slot_count;
+        add_parts(instance, slot, range.first_index);
+        draws_.back().part_count =
+            static_cast<std::uint32_t>(parts_.size()) - draws_.back().first_part;
     }
     instances_ = storage(device, placed);
     slots_ = storage(device, slots);
+}
+
+void GpuScene::add_parts(const Instance& instance, std::uint32_t slot, std::uint32_t first_index) {
+    for (const MeshCluster& cluster : casters_[instance.mesh].clusters) {
+        parts_.push_back(
+            {slot, first_index + 3 * cluster.first_triangle, 3 * cluster.triangle_count});
+        part_bounds_.push_back(placed_bounds(instance, cluster.bounds));
+    }
 }
 
 gpu::Texture GpuScene::base_color(std::uint32_t material) const {
@@ -156,8 +173,8 @@ gpu::Texture GpuScene::base_color(std::uint32_t material) const {
 
 std::uint64_t GpuScene::memory_bytes() const {
     std::uint64_t bytes = 0;
-    for (const gpu::Buffer* buffer :
-         {&positions_, &indices_, &attributes_, &instances_, &slots_, &materials_}) {
+    for (const gpu::Buffer* buffer : {&positions_, &indices_, &caster_indices_, &attributes_,
+                                      &instances_, &slots_, &materials_}) {
         bytes += buffer->memory_bytes();
     }
     for (const gpu::Image& texture : textures_)

@@ -3,11 +3,18 @@
 #include <gnomon/scene.h>
 
 #include "gpu/commands.h"
+#include "raster/caster_mesh.h"
 #include "raster/scene.shared.h"
 
 #include <vector>
 
 namespace gnomon::raster {
+
+/// An instance of a mesh, or of a cluster of its triangles, as a caster.
+struct CasterPart {
+    std::uint32_t slot = 0;
+    std::uint32_t first_index = 0, index_count = 0;  ///< in the casters' index buffer
+};
 
 /// All instances of one mesh that are wound the same way.
 struct Draw {
@@ -15,6 +22,7 @@ struct Draw {
     std::uint32_t material = 0;
     std::uint32_t first_index = 0, index_count = 0, first_vertex = 0;
     std::uint32_t first_slot = 0, slot_count = 0;  ///< in the instance buffer
+    std::uint32_t first_part = 0, part_count = 0;  ///< in GpuScene::parts()
     bool masked = false;
     bool double_sided = true;
     bool mirrored = false;
@@ -30,10 +38,12 @@ public:
     const std::vector<Draw>& draws() const { return draws_; }
     /// The index into Scene::instances() of a slot of the instance buffer.
     std::uint32_t instance_at(std::uint32_t slot) const { return order_[slot]; }
-    /// Of the instance in a slot.
-    const Box3& bounds_ws(std::uint32_t slot) const { return bounds_[slot]; }
+    /// What casts, part by part, and the boxes that hold the parts; together all of the scene.
+    const std::vector<CasterPart>& parts() const { return parts_; }
+    const std::vector<Box3>& part_bounds_ws() const { return part_bounds_; }
     const gpu::Buffer& positions() const { return positions_; }
     const gpu::Buffer& indices() const { return indices_; }
+    const gpu::Buffer& caster_indices() const { return caster_indices_; }
     const gpu::Buffer& instances() const { return instances_; }
     const gpu::Buffer& slots() const { return slots_; }  ///< slot of Scene::instances()[i]
     const gpu::Buffer& attributes() const { return attributes_; }
@@ -46,14 +56,17 @@ public:
 
 private:
     void place_instances(const gpu::Device& device);
+    void add_parts(const Instance& instance, std::uint32_t slot, std::uint32_t first_index);
     void upload_meshes(const gpu::Device& device);
     void upload_materials(const gpu::Device& device);
 
     Scene scene_;
     std::vector<Draw> draws_;
     std::vector<std::uint32_t> order_;
-    std::vector<Box3> bounds_;  // by slot
-    gpu::Buffer positions_, indices_, attributes_, instances_, slots_, materials_;
+    std::vector<CasterMesh> casters_;  // by mesh, without their triangles
+    std::vector<CasterPart> parts_;
+    std::vector<Box3> part_bounds_;
+    gpu::Buffer positions_, indices_, caster_indices_, attributes_, instances_, slots_, materials_;
     std::vector<gpu::Image> textures_;    // Scene::textures() and, last, white
     std::vector<gpu::Sampler> samplers_;  // one for each of them
 };

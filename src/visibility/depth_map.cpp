@@ -54,7 +54,7 @@ void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
     std::vector<std::vector<CasterDraw>> draws;
     for (const MapLayer& layer : layers)
         draws.push_back(place_casters(scene, layer));
-    upload_matrices(commands, scene.scene().instances().size() * layers.size());
+    upload_matrices(commands, scene.parts().size() * layers.size());
     commands.use(image_, gpu::Use::depth_target);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         commands.begin_drawing(
@@ -81,18 +81,38 @@ std::vector<DepthMap::CasterDraw> DepthMap::place_casters(const raster::GpuScene
     const glm::dmat4 from_world(layer.fit.clip_from_world);
     std::vector<CasterDraw> draws;
     for (const raster::Draw& draw : scene.draws()) {
-        const auto first = static_cast<std::uint32_t>(clip_from_local_.size());
-        for (std::uint32_t slot = draw.first_slot; slot < draw.first_slot + draw.slot_count;
-             ++slot) {
-            if (!layer.casters.holds(scene.bounds_ws(slot))) continue;
-            const Instance& instance = scene.scene().instances()[scene.instance_at(slot)];
-            clip_from_local_.emplace_back(from_world * glm::dmat4(instance.world_from_local));
+        for (std::uint32_t i = draw.first_part; i < draw.first_part + draw.part_count; ++i) {
+            if (!layer.casters.holds(scene.part_bounds_ws()[i])) continue;
+            const raster::CasterPart& part = scene.parts()[i];
+            const Instance& instance = scene.scene().instances()[scene.instance_at(part.slot)];
+            add_part(draws, draw, part, Mat4(from_world * glm::dmat4(instance.world_from_local)));
+            triangles_ += part.index_count / 3;
         }
-        const auto count = static_cast<std::uint32_t>(clip_from_local_.size()) - first;
-        if (count > 0) draws.push_back({&draw, first, count});
-        triangles_ += std::uint64_t{count} * draw.index_count / 3;
     }
     return draws;
+}
+
+// Instances of the same triangles become one draw, and so do neighbouring triangles of one
+// instance.
+void DepthMap::add_part(std::vector<CasterDraw>& draws, const raster::Draw& draw,
+                        const raster::CasterPart& part, const Mat4& clip_from_local) {
+    if (!draws.empty() && draws.back().draw == &draw) {
+        CasterDraw& last = draws.back();
+        if (part.slot == last.slot && last.instance_count == 1 &&
+            part.first_index == last.first_index + last.index_count) {
+            last.index_count += part.index_count;
+            return;
+        }
+        if (part.first_index == last.first_index && part.index_count == last.index_count) {
+            last.slot = part.slot;
+            ++last.instance_count;
+            clip_from_local_.push_back(clip_from_local);
+            return;
+        }
+    }
+    draws.push_back({&draw, part.first_index, part.index_count,
+                     static_cast<std::uint32_t>(clip_from_local_.size()), 1, part.slot});
+    clip_from_local_.push_back(clip_from_local);
 }
 
 void DepthMap::upload_matrices(gpu::Commands& commands, std::size_t most) {
@@ -111,7 +131,8 @@ void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene,
     const std::array buffers{scene.positions().handle(), instance_matrices_.handle()};
     const std::array<VkDeviceSize, 2> offsets{};
     vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers.data(), offsets.data());
-    vkCmdBindIndexBuffer(commands.handle(), scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+    vkCmdBindIndexBuffer(commands.handle(), scene.caster_indices().handle(), 0,
+                         VK_INDEX_TYPE_UINT32);
     const gpu::Pipeline* bound = nullptr;
     for (const CasterDraw& caster : draws) {
         const raster::Draw& draw = *caster.draw;
@@ -125,8 +146,8 @@ void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene,
             commands.bind(opaque_, {});
             bound = &opaque_;
         }
-        vkCmdDrawIndexed(commands.handle(), draw.index_count, caster.instance_count,
-                         draw.first_index, static_cast<std::int32_t>(draw.first_vertex),
+        vkCmdDrawIndexed(commands.handle(), caster.index_count, caster.instance_count,
+                         caster.first_index, static_cast<std::int32_t>(draw.first_vertex),
                          caster.first_instance);
     }
 }

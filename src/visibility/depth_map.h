@@ -36,14 +36,18 @@ public:
     std::uint64_t triangles() const { return triangles_; }
 
 private:
-    /// Instances of one mesh, one after the other in the buffer of matrices.
+    /// One range of triangles, of instances one after the other in the buffer of matrices.
     struct CasterDraw {
         const raster::Draw* draw;
+        std::uint32_t first_index, index_count;
         std::uint32_t first_instance, instance_count;
+        std::uint32_t slot;  ///< of the last instance
     };
 
     void make_image(unsigned size_texels, unsigned layers);
     std::vector<CasterDraw> place_casters(const raster::GpuScene& scene, const MapLayer& layer);
+    void add_part(std::vector<CasterDraw>& draws, const raster::Draw& draw,
+                  const raster::CasterPart& part, const Mat4& clip_from_local);
     /// `most`: how many there can be in any frame of this scene.
     void upload_matrices(gpu::Commands& commands, std::size_t most);
     void draw(gpu::Commands& commands, const raster::GpuScene& scene,
