@@ -8,11 +8,21 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
       map_(context.impl().device()),
       lookup_(context.impl().device(), options.filter, options) {}
 
+PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& seen,
+                                             const LightFit& fit, DepthRange range) {
+    const DVec3 to_light_ws(std::get<DirectionalLight>(frame.light).to_light_ws);
+    return {
+        {fit, range.near_m},
+        CasterVolume(fit, to_light_ws, visible_planes(frame.camera, frame.size, seen.bounds, range),
+                     static_cast<double>(frame.scene.bounds().diagonal()))};
+}
+
 void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                           gpu::Image& visibility) {
     std::vector<MapLayer> drawn;
     layers_.clear();
-    for (const PlannedLayer& layer : plan(input.frame)) {
+    const Seen seen = seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
+    for (const PlannedLayer& layer : plan(input.frame, seen)) {
         drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume()});
         layers_.push_back(layer.lookup);
     }

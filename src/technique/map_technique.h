@@ -3,6 +3,7 @@
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
 #include "visibility/map_lookup.h"
+#include "visibility/seen.h"
 
 #include <concepts>
 #include <vector>
@@ -15,9 +16,12 @@ struct MapOptions : BiasOptions {
     MapFilter filter = MapFilter::box_4x4;
     bool cull_casters = true;
 
-    /// Texels around what receivers need: what the filter reads, and one for receivers that the
-    /// bias moves across the border.
-    float margin_texels() const { return filter_radius_texels(filter) + 1.0f; }
+    /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
+    /// across the map, and a half for rounding.
+    float margin_texels() const {
+        return filter_radius_texels(filter) +
+               static_cast<float>(normal_offset) * deciding_reach_texels(filter) + 0.5f;
+    }
     unsigned size_texels() const { return static_cast<unsigned>(map_size); }
 };
 
@@ -54,7 +58,11 @@ protected:
     MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options);
 
     /// The layers of the frame's map, in the order of their receivers' distance from the camera.
-    virtual std::vector<PlannedLayer> plan(const Frame& frame) const = 0;
+    virtual std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const = 0;
+
+    /// A layer of the map of a light at infinity, for the receivers within a range of distances.
+    static PlannedLayer directional_layer(const Frame& frame, const Seen& seen, const LightFit& fit,
+                                          DepthRange range);
 
 private:
     void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) final;

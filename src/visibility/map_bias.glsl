@@ -20,26 +20,29 @@ struct TexelAt {
 // Of a map whose texels are all alike: going a step u across the light, a plane of normal n falls behind
 // by n.u / cos a along the light, a the angle between light and normal, and moving by d along the normal
 // gains d / cos a.
-TexelAt affine_texel(vec3 u_ws, vec3 v_ws, float texel_m, vec3 normal_ws) {
-    return TexelAt(texel_m, length(vec2(dot(normal_ws, u_ws), dot(normal_ws, v_ws))));
+TexelAt affine_texel(MapLayerFrame layer, vec3 normal_ws) {
+    vec2 m = layer.steps.xy * vec2(dot(normal_ws, layer.u.xyz), dot(normal_ws, layer.v.xyz));
+    return TexelAt(layer.steps.z, length(m));
 }
 
 // Of any map, by the gradients of its texel coordinates u, v and its depth z at a point of the world:
 // in (u, v, z) the plane of normal n has the normal m = (gradients)^-T n, and gains |m.uv / m.z| of depth
 // over a texel, as much as moving by |m.uv| along n does.
-TexelAt projective_texel(mat4 clip_from_world, float size_texels, vec3 p_ws, vec3 normal_ws) {
-    mat4 rows = transpose(clip_from_world);
-    vec4 p_cs = clip_from_world * vec4(p_ws, 1.0);
-    // Far outside of the map nothing is looked up; towards a light's side gradients grow without bounds.
-    if (any(greaterThan(abs(p_cs.xy), vec2(2.0 * p_cs.w)))) return TexelAt(0.0, 0.0);
-    vec3 u = (0.5 * size_texels / p_cs.w) * (rows[0].xyz - p_cs.x / p_cs.w * rows[3].xyz);
-    vec3 v = (0.5 * size_texels / p_cs.w) * (rows[1].xyz - p_cs.y / p_cs.w * rows[3].xyz);
-    vec3 z = (1.0 / p_cs.w) * (rows[2].xyz - p_cs.z / p_cs.w * rows[3].xyz);
+TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_ws, vec3 normal_ws) {
+    vec4 p = vec4(p_ws, 1.0);
+    float w = dot(layer.w, p);
+    vec3 uvz = vec3(dot(layer.u, p), dot(layer.v, p), dot(layer.z, p)) / w;
+    vec3 u = (size_texels / w) * (layer.u.xyz - uvz.x * layer.w.xyz);
+    vec3 v = (size_texels / w) * (layer.v.xyz - uvz.y * layer.w.xyz);
+    vec3 z = (1.0 / w) * (layer.z.xyz - uvz.z * layer.w.xyz);
     vec3 along_light = cross(u, v);
     vec2 m = vec2(dot(normal_ws, cross(v, z)), dot(normal_ws, cross(z, u))) / dot(along_light, z);
     float mean = 0.5 * (dot(u, u) + dot(v, v));
     float difference = length(vec2(0.5 * (dot(u, u) - dot(v, v)), dot(u, v)));
-    return TexelAt(sqrt((mean + difference) / dot(along_light, along_light)), length(m));
+    // Far outside of the map nothing is looked up; towards a light's side gradients grow without bounds.
+    bool near = w > 0.0 && all(lessThan(abs(uvz.xy - 0.5), vec2(1.0)));
+    return TexelAt(near ? sqrt((mean + difference) / dot(along_light, along_light)) : 0.0,
+                   near ? length(m) : 0.0);
 }
 
 // `to_light` is a unit vector.

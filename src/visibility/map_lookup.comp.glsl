@@ -22,65 +22,80 @@ layout(set = 0, binding = 4) uniform sampler2DArray map_depth;  // the same map,
 layout(set = 0, binding = 5, scalar) uniform Frame { MapFrame frame; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
+// Of pixels without a receiver, whose values are not used: keeps their places finite.
+const float kLeastDepth = 1e-12;
+
+// Of a filter's result.
+const float kRounding = 1e-6;
+
 struct Layer {
-    mat4 clip_from_world;
-    vec3 texel_u_ws;
-    vec3 texel_v_ws;
-    float texel_m;
+    MapLayerFrame map;
     float index;
 };
 
-Layer layer(uint i) {
-    return Layer(frame.layers[i].clip_from_world, frame.layers[i].texel_u_ws,
-                 frame.layers[i].texel_v_ws, frame.layers[i].texel_m, float(i));
-}
-
-// The last layer that begins before the receiver. Chosen value by value: constants are read for all
-// pixels at once, and an index that differs between them would be followed pixel by pixel.
+// The last layer that begins before the receiver. All are read and one is chosen, number by number: an
+// index that differs between pixels would be followed pixel by pixel.
 Layer layer_of(float depth) {
-    Layer last = layer(0u);
+    Layer layer = Layer(frame.layers[0], 0.0);
     for (uint i = 1u; i < kLayerCount; ++i) {
-        if (depth < frame.layers[i].first_depth) last = layer(i);
+        MapLayerFrame next = frame.layers[i];
+        bool chosen = depth < next.first_depth;
+        layer.map.u = mix(layer.map.u, next.u, bvec4(chosen));
+        layer.map.v = mix(layer.map.v, next.v, bvec4(chosen));
+        layer.map.z = mix(layer.map.z, next.z, bvec4(chosen));
+        layer.map.w = mix(layer.map.w, next.w, bvec4(chosen));
+        layer.map.steps = mix(layer.map.steps, next.steps, bvec3(chosen));
+        layer.index = chosen ? float(i) : layer.index;
     }
-    return last;
+    return layer;
 }
 
-float lit_by_map(vec3 p_ws, Layer layer, uvec2 pixel) {
-    vec4 p_cs = layer.clip_from_world * vec4(p_ws, 1.0);
-    vec3 uvz = kAffine != 0u ? p_cs.xyz : p_cs.xyz / p_cs.w;
-    uvz.xy = 0.5 * uvz.xy + 0.5;
-    bool outside = any(lessThan(uvz.xy, vec2(0.0))) || any(greaterThan(uvz.xy, vec2(1.0)));
-    if (p_cs.w <= 0.0 || outside) return 1.0;
+float filtered(vec3 uvz, float layer, uvec2 pixel) {
     float size = frame.size_texels;
     switch (kFilter) {
         case kFilterNearest:
-            return lit_nearest(map_depth, size, uvz, layer.index);
+            return lit_nearest(map_depth, size, uvz, layer);
         case kFilterHardware2x2:
-            return lit_hardware_2x2(map, uvz, layer.index);
+            return lit_hardware_2x2(map, uvz, layer);
         case kFilterBox3x3:
-            return lit_box_3x3(map, size, uvz, layer.index);
+            return lit_box_3x3(map, size, uvz, layer);
         case kFilterDithered4:
-            return lit_dithered_4(map, size, uvz, layer.index, pixel);
+            return lit_dithered_4(map, size, uvz, layer, pixel);
     }
-    return lit_box_4x4(map, size, uvz, layer.index);
+    return lit_box_4x4(map, size, uvz, layer);
 }
 
+float lit_by_map(vec3 p_ws, Layer layer, uvec2 pixel) {
+    vec4 p = vec4(p_ws, 1.0);
+    vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
+    float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
+    uvz /= w;
+    float lit = filtered(uvz, layer.index, pixel);
+    // Weights sum to 1 but for rounding: what is all but lit or dark is.
+    lit = clamp((1.0 + 2.0 * kRounding) * lit - kRounding, 0.0, 1.0);
+    // A map of the sun holds all receivers; what the bias moves across its border is looked up there.
+    if (kLightKind == kLightDirectional) return lit;
+    bool inside = w > 0.0 && all(lessThanEqual(abs(uvz.xy - 0.5), vec2(0.5)));
+    return inside ? lit : 1.0;
+}
+
+// Without branches: software drivers walk through both sides of each, and read constants and textures
+// slowly within.
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, push.size))) return;
-    float depth = texelFetch(depths, ivec2(pixel), 0).x;
-    float lit = 1.0;
-    if (depth > 0.0) {
-        vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, depth);
-        vec3 normal_ws = unpack_unit_vector(imageLoad(normals, ivec2(pixel)).x);
-        vec3 to_light = normalize(to_light_ws(push.light, p_ws));
-        Layer layer = layer_of(depth);
-        TexelAt texel = kAffine != 0u ? affine_texel(layer.texel_u_ws, layer.texel_v_ws,
-                                                     layer.texel_m, normal_ws)
-                                      : projective_texel(layer.clip_from_world, frame.size_texels,
-                                                         p_ws, normal_ws);
-        vec3 biased_ws = biased_position(p_ws, normal_ws, to_light, texel, frame.bias);
-        lit = faces_light(push.light, p_ws, normal_ws) ? lit_by_map(biased_ws, layer, pixel) : 0.0;
+    ivec2 at = ivec2(min(pixel, push.size - 1u));
+    float depth = texelFetch(depths, at, 0).x;
+    vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, max(depth, kLeastDepth));
+    vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
+    vec3 to_light = normalize(to_light_ws(push.light, p_ws));
+    Layer layer = layer_of(depth);
+    TexelAt texel = kAffine != 0u
+                        ? affine_texel(layer.map, normal_ws)
+                        : projective_texel(layer.map, frame.size_texels, p_ws, normal_ws);
+    vec3 biased_ws = biased_position(p_ws, normal_ws, to_light, texel, frame.bias);
+    float lit = lit_by_map(biased_ws, layer, pixel);
+    lit = faces_light(push.light, p_ws, normal_ws) ? lit : 0.0;
+    if (all(lessThan(pixel, push.size))) {
+        imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));
     }
-    imageStore(visibility, ivec2(pixel), vec4(lit));
 }

@@ -4,6 +4,9 @@
 #include "visibility/light_shape.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
+#include <glm/ext/vector_double4.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -23,6 +26,21 @@ gpu::ComputePipelineInfo lookup_info(MapFilter filter, std::size_t layers, bool 
                        sizeof(shared::ReceiverPush)},
             .constants = {static_cast<std::uint32_t>(filter), static_cast<std::uint32_t>(layers),
                           affine ? 1u : 0u}};
+}
+
+shared::MapLayerFrame layer_frame(const LightFit& fit) {
+    const glm::dmat4 rows = glm::transpose(glm::dmat4(fit.clip_from_world));
+    shared::MapLayerFrame layer{
+        .u = 0.5 * (rows[0] + rows[3]), .v = 0.5 * (rows[1] + rows[3]), .z = rows[2], .w = rows[3]};
+    if (fit.affine) {
+        const TexelSteps steps = fit.texel_steps();
+        const float u_m = glm::length(steps.u_ws);
+        const float v_m = glm::length(steps.v_ws);
+        // A step is along its row's vector, as long as that is short.
+        layer.steps = {u_m / glm::length(Vec3(layer.u)), v_m / glm::length(Vec3(layer.v)),
+                       std::max(u_m, v_m)};
+    }
+    return layer;
 }
 
 }  // namespace
@@ -80,15 +98,9 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     frame.bias = bias_;
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        const LightFit& fit = layers[i].fit;
-        const TexelSteps steps = fit.affine ? fit.texel_steps() : TexelSteps{};
-        frame.layers[i] = {
-            .clip_from_world = fit.clip_from_world,
-            .texel_u_ws = steps.u_ws,
-            .texel_v_ws = steps.v_ws,
-            .texel_m = std::max(glm::length(steps.u_ws), glm::length(steps.v_ws)),
-            .first_depth =
-                i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m)};
+        frame.layers[i] = layer_frame(layers[i].fit);
+        frame.layers[i].first_depth =
+            i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m);
     }
     commands.update(frame_, frame);
     commands.use(visibility, gpu::Use::storage_write);

@@ -20,7 +20,7 @@ float deciding_reach_texels(MapFilter filter);
 
 /// By how much receivers are moved before they are looked up: MapBias.
 struct BiasOptions {
-    double bias_constant = 0.1;
+    double bias_constant = 0.3;
     // A plane is free of acne when bias_slope + normal_offset is 1. Two thirds of it as an offset
     // spare thin casters, one third along the light spares corners.
     double bias_slope = 0.33;
@@ -39,7 +39,7 @@ float depth_at(const Camera& camera, Extent size, double distance_m);
 std::size_t layer_of(std::span<const LookupLayer> layers, const Camera& camera, Vec3 p_ws);
 
 /// Compares receivers with a depth map. Between one and kMaxMapLayers layers, in the order of their
-/// distance from the camera; what lies outside of its layer is lit.
+/// distance from the camera; what lies outside of a spot's map is lit.
 class MapLookup {
 public:
     MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias);

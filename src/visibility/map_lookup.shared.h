@@ -26,10 +26,11 @@ struct MapBias {
 };
 
 struct MapLayerFrame {
-    mat4 clip_from_world;  // of the light, reversed Z
-    vec3 texel_u_ws;       // from a texel to the next, of an affine map
-    vec3 texel_v_ws;
-    float texel_m;      // the longer of both
+    // Rows of the matrix to the map: texel coordinates in [0, 1], reversed depth, w.
+    vec4 u, v, z, w;
+    // Of an affine map: what makes u.xyz and v.xyz the steps from a texel to the next in the world, and
+    // the longer of both steps in metres.
+    vec3 steps;
     float first_depth;  // the layer's receivers are not nearer than this depth of the picture
 };
 

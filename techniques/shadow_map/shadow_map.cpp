@@ -27,7 +27,7 @@ public:
         : MapTechnique(context, shadow_map_info(), options), options_(options) {}
 
 private:
-    std::vector<PlannedLayer> plan(const Frame& frame) const override {
+    std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const override {
         const Box3 bounds = frame.scene.bounds();
         if (const auto* spot = std::get_if<SpotLight>(&frame.light)) {
             const LightFit fit =
@@ -35,13 +35,10 @@ private:
             return {{{fit}, CasterVolume(fit)}};
         }
         const auto& light = std::get<DirectionalLight>(frame.light);
-        const LightFit fit =
-            fit_directional(light, visible_corners(frame.camera, frame.size, bounds), bounds,
-                            options_.size_texels(), options_.margin_texels());
-        return {{{fit},
-                 CasterVolume(fit, DVec3(light.to_light_ws),
-                              visible_planes(frame.camera, frame.size, bounds),
-                              static_cast<double>(bounds.diagonal()))}};
+        const LightFit fit = fit_directional(
+            light, visible_corners(frame.camera, frame.size, seen.bounds, seen.range), bounds,
+            options_.size_texels(), options_.margin_texels());
+        return {directional_layer(frame, seen, fit, seen.range)};
     }
 
     Options options_;

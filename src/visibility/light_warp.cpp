@@ -1,0 +1,146 @@
+// Perspective maps in light space. The world is turned so that z points to the light and y along
+// the view as the light sees it; then a perspective along y, whose eye is at some distance before
+// the receivers, magnifies what is near. Light stays parallel to z, so nothing is ever behind the
+// eye that can cast on a receiver, and depths are well-behaved: that is what sets these maps off
+// from perspective shadow maps. Departure: the depth range is that of the receivers. Casters above
+// it are clamped to its near plane, which keeps them in front of everything and spends no precision
+// on them.
+
+#include "visibility/light_warp.h"
+
+#include <glm/ext/matrix_double4x4.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gnomon {
+
+namespace {
+
+using DVec4 = glm::dvec4;
+
+/// Less than this between view and light gains nothing: a tenth of a degree.
+constexpr double kLeastSine = 2e-3;
+
+/// Of the depth range, on either side: what is biased stays within it.
+constexpr double kDepthMargin = 0.01;
+
+/// The trapezoid's focus gets four fifths of the map, as Martin and Tan propose.
+constexpr double kFocusShare = 0.8;
+
+struct Bounds {
+    DVec3 low{std::numeric_limits<double>::infinity()};
+    DVec3 high{-std::numeric_limits<double>::infinity()};
+    void include(DVec3 p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+};
+
+/// Rotation, and the camera's eye to the origin.
+glm::dmat4 light_from_world(DVec3 to_light, DVec3 forward, DVec3 eye) {
+    const DVec3 along = glm::normalize(forward - glm::dot(forward, to_light) * to_light);
+    const glm::dmat3 axes(glm::cross(along, to_light), along, to_light);
+    const glm::dmat3 rotation = glm::transpose(axes);
+    glm::dmat4 matrix(rotation);
+    matrix[3] = DVec4(-(rotation * eye), 1.0);
+    return matrix;
+}
+
+/// x, y, z to (x n, the perspective depth of y, z n) / (y's distance from the eye at y0 - n).
+glm::dmat4 perspective_along_y(double near_m, double far_m, double y0, double z_middle) {
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = near_m;
+    matrix[1][1] = (far_m + near_m) / (far_m - near_m);
+    matrix[2][2] = near_m;
+    matrix[1][3] = 1.0;
+    const double eye_y = y0 - near_m;
+    matrix[3] = {0.0, -matrix[1][1] * eye_y - 2.0 * far_m * near_m / (far_m - near_m),
+                 -near_m * z_middle, -eye_y};
+    return matrix;
+}
+
+}  // namespace
+
+double warp_near_m(Warp warp, double focus, double near_m, double far_m, double sine,
+                   double length_m) {
+    if (warp == Warp::lispsm && sine > kLeastSine) {
+        return (near_m + std::sqrt(near_m * far_m)) / sine;
+    }
+    if (warp == Warp::trapezoidal) {
+        const double focus_m = sine * focus * (far_m - near_m);
+        const double rest_m = kFocusShare * length_m - focus_m;
+        if (focus_m > 0.0 && rest_m > 0.0) {
+            return length_m * focus_m * (1.0 - kFocusShare) / rest_m;
+        }
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+LightFit fit_warped(Warp warp, double focus, const DirectionalLight& light, const Camera& camera,
+                    std::span<const DVec3> receivers_ws, const Box3& bounds, unsigned size_texels,
+                    float margin_texels) {
+    const DVec3 to_light = glm::normalize(DVec3(light.to_light_ws));
+    const glm::dmat4 view(camera.view_from_world);
+    const glm::dmat4 world_from_view = glm::inverse(view);
+    const DVec3 forward = -DVec3(world_from_view[2]);
+    const double sine = glm::length(glm::cross(forward, to_light));
+    const auto uniform = [&] {
+        return fit_directional(light, receivers_ws, bounds, size_texels, margin_texels);
+    };
+    // In a parallel view near and far want the same texels.
+    const bool parallel = camera.ortho_height_m > 0.0f;
+    if (warp == Warp::none || parallel || receivers_ws.empty() || sine < kLeastSine) {
+        return uniform();
+    }
+
+    const glm::dmat4 light_space = light_from_world(to_light, forward, DVec3(world_from_view[3]));
+    Bounds body, distances;
+    for (const DVec3& p : receivers_ws) {
+        body.include(DVec3(light_space * DVec4(p, 1.0)));
+        distances.include(DVec3(-(view * DVec4(p, 1.0)).z));
+    }
+    const double length_m = body.high.y - body.low.y;
+    const double near_m =
+        warp_near_m(warp, focus, distances.low.x, distances.high.x, sine, length_m);
+    // Ten times the length away a perspective is as good as none, and so is one of no length.
+    constexpr double kFarthestEye = 10.0;
+    // Of a triangle whose corners are farther away than this times the eye, rasterisers' floats
+    // leave too few bits of the depth near it.
+    constexpr double kFarthestCorner = 2000.0;
+    if (!(length_m > 0.0) || !(near_m < kFarthestEye * length_m) ||
+        static_cast<double>(bounds.diagonal()) > kFarthestCorner * near_m) {
+        return uniform();
+    }
+
+    const glm::dmat4 warped = perspective_along_y(near_m, near_m + length_m, body.low.y,
+                                                  0.5 * (body.low.z + body.high.z)) *
+                              light_space;
+    Bounds image;
+    for (const DVec3& p : receivers_ws) {
+        const DVec4 p_cs = warped * DVec4(p, 1.0);
+        image.include(DVec3(p_cs) / p_cs.w);
+    }
+    const double used = std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
+    const double depth_margin = kDepthMargin * std::max(image.high.z - image.low.z, 1e-12);
+    const DVec3 size =
+        glm::max(image.high - image.low, DVec3(1e-12)) + DVec3(0.0, 0.0, 2.0 * depth_margin);
+    const DVec3 middle = 0.5 * (image.low + image.high);
+    const DVec3 scale(2.0 * used / size_texels / size.x, 2.0 * used / size_texels / size.y,
+                      1.0 / size.z);
+    glm::dmat4 to_map(1.0);
+    to_map[0][0] = scale.x;
+    to_map[1][1] = scale.y;
+    to_map[2][2] = scale.z;
+    to_map[3] = DVec4(-scale * middle + DVec3(0.0, 0.0, 0.5), 1.0);
+    LightFit fit;
+    fit.clip_from_world = Mat4(to_map * warped);
+    fit.size_texels = size_texels;
+    fit.affine = false;
+    return fit;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,98 @@
+// Parallel-split shadow maps: the view cut across its axis, a map for each piece. F. Zhang, H. Sun,
+// L. Xu, L. K. Lun, "Parallel-Split Shadow Maps for Large-scale Virtual Environments", VRCIA 2006;
+// W. Engel, "Cascaded Shadow Maps", ShaderX5, 2006. Departures: a split's map is the smallest
+// rectangle around what the camera sees of the scene in it, or, stable, a sphere that does not move
+// with the camera (M. Valient, ShaderX6, 2008); or it is warped along the view as well.
+
+#include "split_distances.h"
+#include "technique/map_technique.h"
+#include "visibility/light_warp.h"
+
+namespace gnomon {
+
+const TechniqueInfo& pssm_info();
+
+namespace {
+
+enum class Fit { tight, stable };
+
+struct Options : MapOptions {
+    Options() { filter = MapFilter::box_3x3; }
+    int splits = 4;
+    double split_lambda = 0.8;
+    Fit fit = Fit::tight;
+    Warp warp = Warp::none;
+};
+
+const ParamTable<Options>& param_table() {
+    static const ParamTable<Options> table(
+        "pssm",
+        {integer("splits", &Options::splits, 1, static_cast<int>(shared::kMaxMapLayers), "1",
+                 "pieces that the view is cut into"),
+         number("split_lambda", &Options::split_lambda, 0.0, 1.0, "1",
+                "0: pieces of equal length; 1: each longer than the one before by one factor"),
+         choice("fit", &Options::fit, {"tight", "stable"},
+                "tight: the smallest map around what is seen; stable: edges do not crawl when the "
+                "camera moves"),
+         choice("warp", &Options::warp, {"none", "lispsm", "trapezoidal"},
+                "smaller texels towards the camera within a split; only with a tight fit")},
+        map_rows<Options>());
+    return table;
+}
+
+class ParallelSplits final : public MapTechnique {
+public:
+    ParallelSplits(Context& context, const Options& options)
+        : MapTechnique(context, pssm_info(), options), options_(options) {}
+
+private:
+    std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const override {
+        std::vector<PlannedLayer> layers;
+        if (seen.range.far_m > seen.range.near_m) {
+            const std::vector<double> distances_m = pssm::split_distances(
+                seen.range.near_m, seen.range.far_m, options_.splits, options_.split_lambda);
+            for (std::size_t i = 0; i + 1 < distances_m.size(); ++i) {
+                const DepthRange range{distances_m[i], distances_m[i + 1]};
+                const std::vector<DVec3> receivers_ws =
+                    visible_corners(frame.camera, frame.size, seen.bounds, range);
+                if (!receivers_ws.empty())
+                    layers.push_back(split(frame, seen, range, receivers_ws));
+            }
+        }
+        if (layers.empty()) layers.push_back(split(frame, seen, {}, {}));  // nothing is seen
+        return layers;
+    }
+
+    PlannedLayer split(const Frame& frame, const Seen& seen, DepthRange range,
+                       std::span<const DVec3> receivers_ws) const {
+        const auto& light = std::get<DirectionalLight>(frame.light);
+        const Box3 bounds = frame.scene.bounds();
+        const bool stable = options_.fit == Fit::stable && !receivers_ws.empty();
+        const LightFit fit =
+            stable ? fit_directional_stable(light, frame.camera, frame.size, range, bounds,
+                                            options_.size_texels(), options_.margin_texels())
+                   : fit_warped(options_.warp, kDefaultFocus, light, frame.camera, receivers_ws,
+                                bounds, options_.size_texels(), options_.margin_texels());
+        return directional_layer(frame, seen, fit, range);
+    }
+
+    Options options_;
+};
+
+}  // namespace
+
+const TechniqueInfo& pssm_info() {
+    static const TechniqueInfo info{
+        .name = "pssm",
+        .title = "Parallel-split shadow maps",
+        .source = "zhang2006, engel2006, valient2008, wimmer2004",
+        .lights = LightKinds::directional,
+        .penumbra = Penumbra::fixed_width,
+        .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
+        .make = [](Context& context, const Params& params) -> std::unique_ptr<Technique> {
+            return std::make_unique<ParallelSplits>(context, param_table().options(params));
+        }};
+    return info;
+}
+
+}  // namespace gnomon
