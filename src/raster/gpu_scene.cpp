@@ -6,6 +6,7 @@
 #include <glm/packing.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -74,7 +75,10 @@ void GpuScene::upload_meshes(const gpu::Device& device) {
     for (const Mesh& mesh : scene_.meshes()) {
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         triangles.insert(triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
-        CasterMesh caster = caster_mesh(mesh, kClusterTriangles);
+        const bool masked = scene_.materials()[mesh.material].masked();
+        CasterMesh caster =
+            caster_mesh(mesh, kClusterTriangles, masked ? Simplify::no : Simplify::yes);
+        first_caster_index_.push_back(static_cast<std::uint32_t>(3 * caster_triangles.size()));
         caster_triangles.insert(caster_triangles.end(), caster.triangles.begin(),
                                 caster.triangles.end());
         caster.triangles = {};
@@ -148,7 +152,7 @@ void GpuScene::place_instances(const gpu::Device& device) {
                               .mirrored = mirrors(instance)});
         }
         ++draws_.back().slot_count;
-        add_parts(instance, slot, range.first_index);
+        add_parts(instance, slot, first_caster_index_[instance.mesh]);
         draws_.back().part_count =
             static_cast<std::uint32_t>(parts_.size()) - draws_.back().first_part;
     }
@@ -157,10 +161,13 @@ void GpuScene::place_instances(const gpu::Device& device) {
 }
 
 void GpuScene::add_parts(const Instance& instance, std::uint32_t slot, std::uint32_t first_index) {
-    for (const MeshCluster& cluster : casters_[instance.mesh].clusters) {
-        parts_.push_back(
-            {slot, first_index + 3 * cluster.first_triangle, 3 * cluster.triangle_count});
-        part_bounds_.push_back(placed_bounds(instance, cluster.bounds));
+    const std::vector<MeshCluster>& clusters = casters_[instance.mesh].clusters;
+    const glm::mat3 linear(instance.world_from_local);
+    const float scale = std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) +
+                                  glm::dot(linear[2], linear[2]));
+    for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+        parts_.push_back({slot, first_index, i, scale});
+        part_bounds_.push_back(placed_bounds(instance, clusters[i].bounds));
     }
 }
 

@@ -13,7 +13,9 @@ namespace gnomon::raster {
 /// An instance of a mesh, or of a cluster of its triangles, as a caster.
 struct CasterPart {
     std::uint32_t slot = 0;
-    std::uint32_t first_index = 0, index_count = 0;  ///< in the casters' index buffer
+    std::uint32_t first_index = 0;  ///< of its mesh in the casters' index buffer
+    std::uint32_t cluster = 0;      ///< of its mesh
+    float scale = 1.0f;             ///< most that a metre of its mesh can be in the world
 };
 
 /// All instances of one mesh that are wound the same way.
@@ -41,6 +43,10 @@ public:
     /// What casts, part by part, and the boxes that hold the parts; together all of the scene.
     const std::vector<CasterPart>& parts() const { return parts_; }
     const std::vector<Box3>& part_bounds_ws() const { return part_bounds_; }
+    /// The triangles of a part: all, then ever fewer, in indices of the casters' buffer.
+    const std::vector<CasterLevel>& levels(const Draw& draw, const CasterPart& part) const {
+        return casters_[draw.mesh].clusters[part.cluster].levels;
+    }
     const gpu::Buffer& positions() const { return positions_; }
     const gpu::Buffer& indices() const { return indices_; }
     const gpu::Buffer& caster_indices() const { return caster_indices_; }
@@ -63,7 +69,8 @@ private:
     Scene scene_;
     std::vector<Draw> draws_;
     std::vector<std::uint32_t> order_;
-    std::vector<CasterMesh> casters_;  // by mesh, without their triangles
+    std::vector<CasterMesh> casters_;                // by mesh, without their triangles
+    std::vector<std::uint32_t> first_caster_index_;  // by mesh
     std::vector<CasterPart> parts_;
     std::vector<Box3> part_bounds_;
     gpu::Buffer positions_, indices_, caster_indices_, attributes_, instances_, slots_, materials_;

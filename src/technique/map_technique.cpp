@@ -2,11 +2,22 @@
 
 namespace gnomon {
 
+namespace {
+
+/// A simplified caster may be so much nearer to the light than the surface that it stands for.
+BiasOptions bias(const MapOptions& options) {
+    BiasOptions bias = options;
+    bias.bias_constant += options.caster_error;
+    return bias;
+}
+
+}  // namespace
+
 MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options)
     : GpuTechnique(context, info),
       options_(options),
       map_(context.impl().device()),
-      lookup_(context.impl().device(), options.filter, options) {}
+      lookup_(context.impl().device(), options.filter, bias(options)) {}
 
 PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& seen,
                                              const LightFit& fit, DepthRange range) {
@@ -23,7 +34,8 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     layers_.clear();
     const Seen seen = seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
     for (const PlannedLayer& layer : plan(input.frame, seen)) {
-        drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume()});
+        drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume(),
+                         static_cast<float>(options_.caster_error)});
         layers_.push_back(layer.lookup);
     }
     {

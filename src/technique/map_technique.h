@@ -15,12 +15,14 @@ struct MapOptions : BiasOptions {
     int map_size = 2048;
     MapFilter filter = MapFilter::box_4x4;
     bool cull_casters = true;
+    double caster_error = 0.25;
 
     /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
     /// across the map, and a half for rounding.
     float margin_texels() const {
         return filter_radius_texels(filter) +
-               static_cast<float>(normal_offset) * deciding_reach_texels(filter) + 0.5f;
+               static_cast<float>(normal_offset) * biased_reach_texels(filter, receiver_plane) +
+               0.5f;
     }
     unsigned size_texels() const { return static_cast<unsigned>(map_size); }
 };
@@ -41,8 +43,14 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
         number<Options>("normal_offset", &Options::normal_offset, 0.0, 16.0, "1",
                         "and off their surface by this times what frees a plane from the filter's "
                         "reach"),
+        boolean<Options>("receiver_plane", &Options::receiver_plane,
+                         "texels are compared with the receiver's plane at their centres; the "
+                         "offset and the slope then make up for a third of the filter's reach"),
         boolean<Options>("cull_casters", &Options::cull_casters,
-                         "casters whose shadow no receiver can meet are not drawn")};
+                         "casters whose shadow no receiver can meet are not drawn"),
+        number<Options>("caster_error", &Options::caster_error, 0.0, 4.0, "texels",
+                        "casters are simplified by no more than this; receivers are moved as much "
+                        "farther towards the light")};
 }
 
 /// One layer of a technique's map: where its texels are, which receivers look it up, and what can

@@ -5,8 +5,11 @@
 #include "caster_masked.vert.spv.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
+#include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 
 namespace gnomon {
@@ -37,6 +40,35 @@ gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked) {
                                    .offset = column * static_cast<std::uint32_t>(sizeof(Vec4))});
     }
     return gpu::Pipeline(device, info);
+}
+
+/// The side of the smallest texel that the box can touch, in metres.
+float least_texel_m(const LightFit& fit, const Box3& box) {
+    if (fit.affine) {
+        const TexelSteps steps = fit.texel_steps();
+        return std::min(glm::length(steps.u_ws), glm::length(steps.v_ws));
+    }
+    float least_m = std::numeric_limits<float>::infinity();
+    for (unsigned i = 0; i < 8; ++i) {
+        const Vec3 corner((i & 1) != 0 ? box.max.x : box.min.x,
+                          (i & 2) != 0 ? box.max.y : box.min.y,
+                          (i & 4) != 0 ? box.max.z : box.min.z);
+        least_m = std::min(least_m, fit.texel_size_m(corner));
+    }
+    return least_m;
+}
+
+/// The fewest triangles that show the part as the map's texels can.
+const raster::CasterLevel& level_for(const MapLayer& layer,
+                                     const std::vector<raster::CasterLevel>& levels,
+                                     const raster::CasterPart& part, const Box3& bounds_ws) {
+    std::size_t chosen = 0;
+    if (layer.caster_error_texels > 0.0f && levels.size() > 1) {
+        const float error_m = layer.caster_error_texels * least_texel_m(layer.fit, bounds_ws);
+        while (chosen + 1 < levels.size() && levels[chosen + 1].error_m * part.scale <= error_m)
+            ++chosen;
+    }
+    return levels[chosen];
 }
 
 }  // namespace
@@ -82,11 +114,12 @@ std::vector<DepthMap::CasterDraw> DepthMap::place_casters(const raster::GpuScene
     std::vector<CasterDraw> draws;
     for (const raster::Draw& draw : scene.draws()) {
         for (std::uint32_t i = draw.first_part; i < draw.first_part + draw.part_count; ++i) {
-            if (!layer.casters.holds(scene.part_bounds_ws()[i])) continue;
+            const Box3& bounds_ws = scene.part_bounds_ws()[i];
+            if (!layer.casters.holds(bounds_ws)) continue;
             const raster::CasterPart& part = scene.parts()[i];
             const Instance& instance = scene.scene().instances()[scene.instance_at(part.slot)];
-            add_part(draws, draw, part, Mat4(from_world * glm::dmat4(instance.world_from_local)));
-            triangles_ += part.index_count / 3;
+            add_part(draws, draw, part, level_for(layer, scene.levels(draw, part), part, bounds_ws),
+                     Mat4(from_world * glm::dmat4(instance.world_from_local)));
         }
     }
     return draws;
@@ -95,22 +128,26 @@ std::vector<DepthMap::CasterDraw> DepthMap::place_casters(const raster::GpuScene
 // Instances of the same triangles become one draw, and so do neighbouring triangles of one
 // instance.
 void DepthMap::add_part(std::vector<CasterDraw>& draws, const raster::Draw& draw,
-                        const raster::CasterPart& part, const Mat4& clip_from_local) {
+                        const raster::CasterPart& part, const raster::CasterLevel& level,
+                        const Mat4& clip_from_local) {
+    const std::uint32_t first_index = part.first_index + 3 * level.first_triangle;
+    const std::uint32_t index_count = 3 * level.triangle_count;
+    triangles_ += level.triangle_count;
     if (!draws.empty() && draws.back().draw == &draw) {
         CasterDraw& last = draws.back();
         if (part.slot == last.slot && last.instance_count == 1 &&
-            part.first_index == last.first_index + last.index_count) {
-            last.index_count += part.index_count;
+            first_index == last.first_index + last.index_count) {
+            last.index_count += index_count;
             return;
         }
-        if (part.first_index == last.first_index && part.index_count == last.index_count) {
+        if (first_index == last.first_index && index_count == last.index_count) {
             last.slot = part.slot;
             ++last.instance_count;
             clip_from_local_.push_back(clip_from_local);
             return;
         }
     }
-    draws.push_back({&draw, part.first_index, part.index_count,
+    draws.push_back({&draw, first_index, index_count,
                      static_cast<std::uint32_t>(clip_from_local_.size()), 1, part.slot});
     clip_from_local_.push_back(clip_from_local);
 }

@@ -14,6 +14,7 @@ namespace gnomon {
 struct MapLayer {
     LightFit fit;
     CasterVolume casters;
+    float caster_error_texels = 0.0f;  ///< how far simplified casters may be off; 0: none are
 };
 
 /// A depth map of one or more square layers: D32, reversed, so that 1 is nearest to the light and 0
@@ -47,7 +48,8 @@ private:
     void make_image(unsigned size_texels, unsigned layers);
     std::vector<CasterDraw> place_casters(const raster::GpuScene& scene, const MapLayer& layer);
     void add_part(std::vector<CasterDraw>& draws, const raster::Draw& draw,
-                  const raster::CasterPart& part, const Mat4& clip_from_local);
+                  const raster::CasterPart& part, const raster::CasterLevel& level,
+                  const Mat4& clip_from_local);
     /// `most`: how many there can be in any frame of this scene.
     void upload_matrices(gpu::Commands& commands, std::size_t most);
     void draw(gpu::Commands& commands, const raster::GpuScene& scene,

@@ -280,6 +280,52 @@ TEST(FitDirectional, KnowsTheSizeOfItsTexels) {
     }
 }
 
+TEST(FitDirectionalStable, LeavesItsTexelsWhereTheyAreInTheWorld) {
+    Random random(12);
+    Box3 bounds;
+    bounds.include(Vec3(-50, 0, -50));
+    bounds.include(Vec3(50, 12, 50));
+    const DirectionalLight light{.to_light_ws = normalize({0.3f, 1.0f, 0.5f})};
+    const DepthRange range{2.0, 20.0};
+    const DVec3 mark(1.0, 2.0, -3.0);
+    const auto texel_of_mark = [&](const Camera& camera) {
+        const LightFit fit = fit_directional_stable(light, camera, {160, 90}, range, bounds,
+                                                    kMapSize, kMarginTexels);
+        const DVec3 ndc = project(fit, mark).ndc;
+        return 0.5 * kMapSize * glm::dvec2(ndc);
+    };
+    const glm::dvec2 first = texel_of_mark(look_at({0, 3, 9}, {0, 1, 0}));
+    for (int i = 0; i < 40; ++i) {
+        const Vec3 eye = Vec3(0, 3, 9) + random.point(Vec3(-1), Vec3(1));
+        const glm::dvec2 moved =
+            texel_of_mark(look_at(eye, random.point(Vec3(-2), Vec3(2)))) - first;
+        // By whole texels, but for the matrix's rounding to float.
+        EXPECT_NEAR(moved.x, std::round(moved.x), 2e-3);
+        EXPECT_NEAR(moved.y, std::round(moved.y), 2e-3);
+    }
+}
+
+TEST(FitDirectionalStable, HoldsTheFrustum) {
+    Random random(13);
+    Box3 bounds;
+    bounds.include(Vec3(-50, 0, -50));
+    bounds.include(Vec3(50, 12, 50));
+    for (int i = 0; i < 40; ++i) {
+        const Camera camera =
+            look_at(random.point(Vec3(-9), Vec3(9)), random.point(Vec3(-9), Vec3(9)),
+                    radians(random.uniform(20.0f, 100.0f)));
+        const DirectionalLight light{.to_light_ws = random.direction()};
+        const DepthRange range{1.0, random.uniform(2.0f, 30.0f)};
+        const LightFit fit = fit_directional_stable(light, camera, {160, 90}, range, bounds,
+                                                    kMapSize, kMarginTexels);
+        for (const DVec3& p : visible_corners(camera, {160, 90}, bounds, range)) {
+            const Projected at = project(fit, p);
+            EXPECT_LE(std::abs(at.ndc.x), kInnerNdc + at.rounding.x);
+            EXPECT_LE(std::abs(at.ndc.y), kInnerNdc + at.rounding.y);
+        }
+    }
+}
+
 TEST(FitDirectional, CopesWithBoundsOfNoSizeAndWithNothingSeen) {
     Box3 point;
     point.include({1, 2, 3});

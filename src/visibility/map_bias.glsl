@@ -9,20 +9,25 @@
 
 #include "visibility/map_lookup.shared.h"
 
-// A surface at 84° to the light; steeper ones are biased as this one.
+// A surface at 84° to the light; steeper ones are moved as this one.
 const float kMaxSlope = 10.0;
+
+// A plane at 89°: steeper ones are extended as this one, since normals of 16 bits would tell too little.
+const float kMaxGradientSlope = 50.0;
 
 struct TexelAt {
     float side_m;    // across the light, the longer one
     float offset_m;  // along the normal, that gains the depth that the plane gains over one texel
+    vec2 gradient;   // the map's depth that the plane gains from a texel to the next
 };
 
 // Of a map whose texels are all alike: going a step u across the light, a plane of normal n falls behind
 // by n.u / cos a along the light, a the angle between light and normal, and moving by d along the normal
 // gains d / cos a.
-TexelAt affine_texel(MapLayerFrame layer, vec3 normal_ws) {
+TexelAt affine_texel(MapLayerFrame layer, vec3 normal_ws, vec3 to_light) {
     vec2 m = layer.steps.xy * vec2(dot(normal_ws, layer.u.xyz), dot(normal_ws, layer.v.xyz));
-    return TexelAt(layer.steps.z, length(m));
+    float cosine = max(dot(normal_ws, to_light), 1.0 / kMaxGradientSlope);
+    return TexelAt(layer.steps.z, length(m), -dot(layer.z.xyz, to_light) / cosine * m);
 }
 
 // Of any map, by the gradients of its texel coordinates u, v and its depth z at a point of the world:
@@ -41,8 +46,12 @@ TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_ws, vec3
     float difference = length(vec2(0.5 * (dot(u, u) - dot(v, v)), dot(u, v)));
     // Far outside of the map nothing is looked up; towards a light's side gradients grow without bounds.
     bool near = w > 0.0 && all(lessThan(abs(uvz.xy - 0.5), vec2(1.0)));
+    // m.z is the normal's part along the light, which has no depth where the plane is seen edge on.
+    float along = dot(normal_ws, along_light) / dot(along_light, z);
+    float least = length(along_light) / abs(dot(along_light, z)) / kMaxGradientSlope;
+    vec2 gradient = -m / (sign(along) * max(abs(along), least));
     return TexelAt(near ? sqrt((mean + difference) / dot(along_light, along_light)) : 0.0,
-                   near ? length(m) : 0.0);
+                   near ? length(m) : 0.0, near ? gradient : vec2(0.0));
 }
 
 // `to_light` is a unit vector.

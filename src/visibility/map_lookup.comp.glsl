@@ -17,9 +17,8 @@ layout(constant_id = 3) const uint kAffine = 1u;  // all texels of a layer are o
 layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D visibility;
-layout(set = 0, binding = 3) uniform sampler2DArrayShadow map;  // linear, compares
-layout(set = 0, binding = 4) uniform sampler2DArray map_depth;  // the same map, its values
-layout(set = 0, binding = 5, scalar) uniform Frame { MapFrame frame; };
+layout(set = 0, binding = 3) uniform sampler2DArray map;
+layout(set = 0, binding = 4, scalar) uniform Frame { MapFrame frame; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
@@ -50,27 +49,29 @@ Layer layer_of(float depth) {
     return layer;
 }
 
-float filtered(vec3 uvz, float layer, uvec2 pixel) {
+float filtered(MapPoint point, uvec2 pixel) {
     float size = frame.size_texels;
     switch (kFilter) {
         case kFilterNearest:
-            return lit_nearest(map_depth, size, uvz, layer);
+            return lit_nearest(map, size, point);
         case kFilterHardware2x2:
-            return lit_hardware_2x2(map, uvz, layer);
+            return lit_bilinear(map, size, point, point.texel);
         case kFilterBox3x3:
-            return lit_box_3x3(map, size, uvz, layer);
+            return lit_box_3x3(map, size, point);
         case kFilterDithered4:
-            return lit_dithered_4(map, size, uvz, layer, pixel);
+            return lit_dithered_4(map, size, point, pixel);
     }
-    return lit_box_4x4(map, size, uvz, layer);
+    return lit_box_4x4(map, size, point);
 }
 
-float lit_by_map(vec3 p_ws, Layer layer, uvec2 pixel) {
+float lit_by_map(vec3 p_ws, TexelAt texel, Layer layer, uvec2 pixel) {
     vec4 p = vec4(p_ws, 1.0);
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
     float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
     uvz /= w;
-    float lit = filtered(uvz, layer.index, pixel);
+    float lit = filtered(MapPoint(frame.size_texels * uvz.xy, uvz.z,
+                                  frame.bias.receiver_plane * texel.gradient, layer.index),
+                         pixel);
     // Weights sum to 1 but for rounding: what is all but lit or dark is.
     lit = clamp((1.0 + 2.0 * kRounding) * lit - kRounding, 0.0, 1.0);
     // A map of the sun holds all receivers; what the bias moves across its border is looked up there.
@@ -90,10 +91,10 @@ void main() {
     vec3 to_light = normalize(to_light_ws(push.light, p_ws));
     Layer layer = layer_of(depth);
     TexelAt texel = kAffine != 0u
-                        ? affine_texel(layer.map, normal_ws)
+                        ? affine_texel(layer.map, normal_ws, to_light)
                         : projective_texel(layer.map, frame.size_texels, p_ws, normal_ws);
     vec3 biased_ws = biased_position(p_ws, normal_ws, to_light, texel, frame.bias);
-    float lit = lit_by_map(biased_ws, layer, pixel);
+    float lit = lit_by_map(biased_ws, texel, layer, pixel);
     lit = faces_light(push.light, p_ws, normal_ws) ? lit : 0.0;
     if (all(lessThan(pixel, push.size))) {
         imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));

@@ -17,6 +17,9 @@ enum class MapFilter { nearest, hardware_2x2, box_3x3, box_4x4, dithered_4 };
 float filter_radius_texels(MapFilter filter);
 /// How far from the receiver a texel's centre may lie and still decide between light and shadow.
 float deciding_reach_texels(MapFilter filter);
+/// For how much of that receivers are moved: for all, or, when texels are compared with the
+/// receiver's plane, for what surfaces differ from it.
+float biased_reach_texels(MapFilter filter, bool receiver_plane);
 
 /// By how much receivers are moved before they are looked up: MapBias.
 struct BiasOptions {
@@ -25,6 +28,7 @@ struct BiasOptions {
     // spare thin casters, one third along the light spares corners.
     double bias_slope = 0.33;
     double normal_offset = 0.67;
+    bool receiver_plane = true;  ///< compare each texel with the receiver's plane there
 };
 
 /// A layer of a map as receivers choose it.
@@ -57,7 +61,7 @@ private:
     shared::MapBias bias_;
     /// For each number of layers, of maps that are affine and that are not.
     std::array<std::array<LookupPipeline, 2>, shared::kMaxMapLayers + 1> pipelines_;
-    gpu::Sampler nearest_, compare_;
+    gpu::Sampler nearest_;
     gpu::Buffer frame_;
 };
 

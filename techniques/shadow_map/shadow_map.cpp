@@ -1,10 +1,8 @@
 // Shadow map: one depth map fitted to what the camera sees, for the sun and for spots.
 // L. Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978; W. Reeves et al.,
-// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987; M. Bunnell and F. Pellacini,
-// "Shadow Map Antialiasing", GPU Gems 2004, chapter 11, for the filters. Departures: the biases are
-// in units of the map's texels at the receiver, in the world, and the normal offset (D. Holbert,
-// "Saying Goodbye to Shadow Acne", GDC 2011) grows with the sine of the light's angle and the
-// filter's reach, which is just what a plane needs.
+// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987. Filters and biases, which all
+// techniques with depth maps share, name their sources in visibility/map_filter.glsl and
+// map_bias.glsl.
 
 #include "technique/map_technique.h"
 
@@ -50,7 +48,7 @@ const TechniqueInfo& shadow_map_info() {
     static const TechniqueInfo info{
         .name = "shadow_map",
         .title = "Shadow map",
-        .source = "williams1978, reeves1987, bunnell2004, holbert2011",
+        .source = "williams1978, reeves1987, bunnell2004, king2004, isidoro2006, holbert2011",
         .lights = LightKinds::directional | LightKinds::spot,
         .penumbra = Penumbra::fixed_width,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },

@@ -64,6 +64,7 @@ void for_each_plane(std::initializer_list<float> angles_deg, const Check& check)
 Params with_bias(Params params, double slope, double normal_offset) {
     params.set("bias_slope", slope);
     params.set("normal_offset", normal_offset);
+    params.set("receiver_plane", false);
     return params;
 }
 
@@ -85,6 +86,16 @@ TEST_F(ShadowMapTest, HasNoAcneOnAPlaneByTheSlopeBias) {
     });
 }
 
+TEST_F(ShadowMapTest, HasNoAcneOnAPlaneByComparingWithIt) {
+    for_each_plane({0, 30, 60, 80, 88}, [](const Frame& frame, const Params& params) {
+        Params plane = with_bias(params, 0, 0);
+        plane.set("receiver_plane", true);
+        plane.set("bias_constant", 0.05);  // for rounding
+        plane.set("caster_error", 0.0);
+        EXPECT_EQ(range(render(frame, plane)), kAllLit);
+    });
+}
+
 TEST_F(ShadowMapTest, HasHardlyAnyAcneOnAPlaneByDefault) {
     for_each_plane({0, 30, 60, 80}, [](const Frame& frame, const Params& params) {
         const auto [least, greatest] = range(render(frame, params));
@@ -98,6 +109,7 @@ TEST_F(ShadowMapTest, HasHardlyAnyAcneOnAPlaneByDefault) {
 TEST_F(ShadowMapTest, DrawsNoPlaneThatCanOnlyShadowItself) {
     Params none = with_bias({{"map_size", 32}}, 0, 0);
     none.set("bias_constant", 0);
+    none.set("caster_error", 0);
     EXPECT_EQ(range(render(plane_frame(sun_at(60)), none)), kAllLit);
 }
 
@@ -105,6 +117,7 @@ TEST_F(ShadowMapTest, HasAcneWithoutBias) {
     for_each_plane({30, 60, 80, 88}, [](const Frame& frame, const Params& params) {
         Params none = with_bias(params, 0, 0);
         none.set("bias_constant", 0);
+        none.set("caster_error", 0);
         EXPECT_LT(range(render(frame, none)).first, 0.8f);
     });
 }
@@ -165,7 +178,8 @@ TEST_F(ShadowMapTest, TellsTheSizeAndReachOfItsTexels) {
         ASSERT_EQ(coarse_m.size(), std::size_t{96} * 54);
         for (std::size_t i = 0; i < coarse_m.size(); ++i) {
             if (coarse_m[i] == 0.0f) continue;  // no receiver
-            // Four times the texels over the same place, but for a margin of at most 5 on each side.
+            // Four times the texels over the same place, but for a margin of at most 5 on each
+            // side.
             EXPECT_GE(coarse_m[i] / fine_m[i], 4.0f);
             EXPECT_LE(coarse_m[i] / fine_m[i], (1024.0f - 10.0f) / (256.0f - 10.0f));
         }

@@ -1,0 +1,77 @@
+#include <gnomon/technique.h>
+
+#include "visibility/context_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon {
+namespace {
+
+class MapTechniqueTest : public ContextTest {
+protected:
+    static Frame frame_of(const char* scene_name) {
+        const Scene scene = make_builtin_scene(scene_name);
+        return {.scene = scene,
+                .camera = scene.cameras().at(0),
+                .light = scene.lights().at(0),
+                .size = {320, 180}};
+    }
+
+    /// Share of pixels whose visibility differs by more than a half.
+    static double changed(const Visibility& a, const Visibility& b) {
+        std::size_t count = 0;
+        const std::span<const float> before = a.image().pixels();
+        const std::span<const float> after = b.image().pixels();
+        for (std::size_t i = 0; i < before.size(); ++i)
+            count += std::abs(before[i] - after[i]) > 0.5f ? 1 : 0;
+        return static_cast<double>(count) / static_cast<double>(before.size());
+    }
+};
+
+TEST_F(MapTechniqueTest, CastersThatAreNotDrawnAreNotMissed) {
+    for (const char* scene : {"courtyard", "gas-station", "field-small"}) {
+        for (const float elevation_deg : {10.0f, 45.0f, 80.0f}) {
+            Frame frame = frame_of(scene);
+            frame.light = sun(radians(elevation_deg), radians(200.0f));
+            for (const char* technique : {"shadow_map", "lispsm", "tsm", "pssm"}) {
+                const Visibility culled = make_technique(context(), technique)->render(frame);
+                const Visibility all =
+                    make_technique(context(), technique, {{"cull_casters", false}})->render(frame);
+                // What is left are receivers on the edges of texels, which a ground of no shadow
+                // shares.
+                EXPECT_LT(changed(culled, all), 2e-4)
+                    << technique << ", " << scene << ", " << elevation_deg;
+            }
+        }
+    }
+}
+
+TEST_F(MapTechniqueTest, SimplifiedCastersChangeHardlyAPixel) {
+    const Frame frame = frame_of("field-small");
+    for (const char* technique : {"shadow_map", "lispsm", "pssm"}) {
+        const Visibility simplified = make_technique(context(), technique)->render(frame);
+        const Visibility all =
+            make_technique(context(), technique, {{"caster_error", 0.0}})->render(frame);
+        // A quarter of a texel moves edges by as much: of the pixels on edges a few.
+        EXPECT_LT(changed(simplified, all), 2e-3) << technique;
+    }
+}
+
+TEST_F(MapTechniqueTest, MoreSplitsErrLess) {
+    const Frame frame = frame_of("field-small");
+    const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
+    const ComparisonMask mask = comparison_mask(context(), frame);
+    double before = 1.0;
+    for (const int splits : {1, 2, 4}) {
+        const Visibility visibility =
+            make_technique(context(), "pssm", {{"splits", splits}, {"map_size", 512}})
+                ->render(frame);
+        const double rmse = compare(visibility, truth, mask).rmse;
+        EXPECT_LT(rmse, 0.95 * before) << splits;
+        before = rmse;
+    }
+}
+
+}  // namespace
+}  // namespace gnomon

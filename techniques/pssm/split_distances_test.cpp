@@ -1,0 +1,35 @@
+#include "split_distances.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gnomon::pssm {
+namespace {
+
+TEST(SplitDistances, BeginAndEndWithTheViewAndRise) {
+    for (const double lambda : {0.0, 0.3, 1.0}) {
+        for (int splits = 1; splits <= 8; ++splits) {
+            const std::vector<double> distances_m = split_distances(0.5, 300.0, splits, lambda);
+            ASSERT_EQ(distances_m.size(), static_cast<std::size_t>(splits) + 1);
+            EXPECT_EQ(distances_m.front(), 0.5);
+            EXPECT_EQ(distances_m.back(), 300.0);
+            for (int i = 0; i < splits; ++i)
+                EXPECT_LT(distances_m[i], distances_m[i + 1]);
+        }
+    }
+}
+
+TEST(SplitDistances, AreUniformLogarithmicOrBetween) {
+    const std::vector<double> uniform = split_distances(1.0, 81.0, 4, 0.0);
+    const std::vector<double> logarithmic = split_distances(1.0, 81.0, 4, 1.0);
+    const std::vector<double> half = split_distances(1.0, 81.0, 4, 0.5);
+    for (int i = 0; i <= 4; ++i) {
+        EXPECT_NEAR(uniform[i], 1.0 + 20.0 * i, 1e-12);
+        EXPECT_NEAR(logarithmic[i], std::pow(3.0, i), 1e-12);
+        EXPECT_NEAR(half[i], 0.5 * (uniform[i] + logarithmic[i]), 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace gnomon::pssm
