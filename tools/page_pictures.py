@@ -21,7 +21,9 @@ COLOURS = 256  # of a picture's palette, so that a file stays small
 
 RECT = "--light rect:center=1.5,3,1,u=0.5,0,0,v=0,0,0.5"
 MAP = "--technique shadow_map"
-NO_BIAS = "--shadow_map.bias_constant 0 --shadow_map.bias_slope 0 --shadow_map.normal_offset 0"
+NO_BIAS = ("--shadow_map.receiver_plane false --shadow_map.bias_constant 0 --shadow_map.bias_slope 0 "
+           "--shadow_map.normal_offset 0 --shadow_map.caster_error 0")
+STEEP = "courtyard --light sun:elevation=80,azimuth=30"
 
 # Picture: size to render, crop (left, top, right, bottom) in px, panels in a row, and what each panel shows.
 PICTURES = {
@@ -33,6 +35,20 @@ PICTURES = {
         f"courtyard {MAP} {NO_BIAS}", f"courtyard {MAP}",
         f"courtyard {MAP} --shadow_map.bias_constant 30", f"courtyard {MAP} --shadow_map.map_size 256"]),
     "shadow_map-far": ("1280x720", (440, 300, 760, 460), 2, ["field-small", f"field-small {MAP}"]),
+    "shadow_map-plane": ("1280x720", (0, 160, 520, 360), 3, [
+        STEEP, f"{STEEP} {MAP} --shadow_map.receiver_plane false", f"{STEEP} {MAP}"]),
+    "pssm": ("1280x720", (440, 300, 760, 460), 3, [
+        "field-small", f"field-small {MAP}", "field-small --technique pssm"]),
+    "pssm-splits": ("1280x720", (480, 280, 960, 440), 2, [
+        f"field-large --technique pssm --pssm.splits {splits}" for splits in (1, 2, 4)] + [
+        "field-large --technique pssm --pssm.fit stable"]),
+    "lispsm": ("1280x720", (480, 200, 960, 440), 3, [
+        "field-large", f"field-large {MAP}", "field-large --technique lispsm"]),
+    "lispsm-fails": ("1280x720", (860, 400, 1180, 560), 3, [
+        "courtyard", f"courtyard {MAP} --shadow_map.map_size 1024",
+        "courtyard --technique lispsm --lispsm.map_size 1024"]),
+    "tsm-focus": ("1280x720", (480, 200, 960, 440), 3, [
+        f"field-large --technique tsm --tsm.focus {focus}" for focus in (0.1, 0.4, 0.7)]),
     "shadow_volumes-alpha": ("1280x720", (520, 380, 920, 560), 3, [
         "courtyard", "courtyard --technique shadow_volumes", "courtyard --ignore-alpha"]),
     "shadow_volumes-hard": ("1280x720", (0, 430, 480, 670), 2, [

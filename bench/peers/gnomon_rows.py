@@ -31,6 +31,10 @@ CONFIGS = {
     "shadow_map-2048": ["--techniques", "shadow_map", "--shadow_map.map_size", "2048"],
     "shadow_map-2048-2x2": ["--techniques", "shadow_map", "--shadow_map.map_size", "2048",
                             "--shadow_map.filter", "hardware_2x2"],
+    "lispsm-2048": ["--techniques", "lispsm"],
+    "pssm-4-2048": ["--techniques", "pssm"],
+    "pssm-4-2048-2x2": ["--techniques", "pssm", "--pssm.filter", "hardware_2x2"],
+    "local_illumination": ["--techniques", "local_illumination"],
     "shadow_volumes": ["--techniques", "shadow_volumes"],
     "ray_traced": ["--techniques", "ray_traced"],
 }

@@ -1,0 +1,129 @@
+// How well a technique's hard shadows match the traced ones, and what its passes cost, in the views
+// of a comparison of engines.
+//
+//     shadow_iou SCENE VIEW.json "TECHNIQUE [PARAMETER=VALUE...]"...
+//
+// VIEW.json has eye, target, fovy_deg, near and to_sun, as the scenes of bench/peers have. At 1920
+// x 1080, the sun without extent. IoU: of the receivers whose cosine to the light is 0.08 or more,
+// those in shadow in both, over those in shadow in either; a half decides. Times are medians of
+// seven frames.
+
+#include <gnomon/error.h>
+#include <gnomon/gnomon.h>
+
+#include "base/check.h"
+#include "visibility/context_impl.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace gnomon {
+namespace {
+
+constexpr Extent kSize{1920, 1080};
+constexpr float kLeastCosine = 0.08f;
+constexpr int kFrames = 7;
+
+Vec3 vector(const nlohmann::json& view, const char* key) {
+    const nlohmann::json& value = view.at(key);
+    return {value.at(0), value.at(1), value.at(2)};
+}
+
+Frame frame_of(const Scene& scene, const nlohmann::json& view) {
+    Camera camera = look_at(vector(view, "eye"), vector(view, "target"),
+                            radians(view.at("fovy_deg").get<float>()));
+    camera.near_m = view.at("near");
+    const DirectionalLight light{.to_light_ws = normalize(vector(view, "to_sun"))};
+    return {.scene = scene, .camera = camera, .light = light, .size = kSize};
+}
+
+double iou_percent(const std::vector<trace::Receiver>& receivers, const Frame& frame,
+                   const Image& truth, const Image& found) {
+    const Vec3 to_light = std::get<DirectionalLight>(frame.light).to_light_ws;
+    std::size_t both = 0;
+    std::size_t either = 0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        if (!receivers[i].exists() || glm::dot(receivers[i].normal_ws, to_light) < kLeastCosine) {
+            continue;
+        }
+        const bool traced = truth.pixels()[i] < 0.5f;
+        const bool shown = found.pixels()[i] < 0.5f;
+        both += traced && shown ? 1 : 0;
+        either += traced || shown ? 1 : 0;
+    }
+    return 100.0 * static_cast<double>(both) /
+           static_cast<double>(std::max<std::size_t>(either, 1));
+}
+
+std::unique_ptr<Technique> make(Context& context, const std::string& spec) {
+    std::istringstream words(spec);
+    std::string name;
+    words >> name;
+    const TechniqueInfo& info = find_technique(name);
+    Params params;
+    for (std::string word; words >> word;) {
+        const std::size_t equals = word.find('=');
+        const ParamInfo& param = find_param(name, info.params(), word.substr(0, equals));
+        params.set(param.name, parse_param(name, param, word.substr(equals + 1)));
+    }
+    return make_technique(context, name, params);
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+}
+
+void judge(Context& context, const Frame& frame, const Image& truth, const std::string& spec) {
+    Progress silent;
+    const std::unique_ptr<Technique> technique = make(context, spec);
+    Visibility found = technique->render(frame);
+    std::vector<double> total_ms;
+    std::map<std::string, std::vector<double>> passes_ms;
+    for (int i = 0; i < kFrames; ++i) {
+        technique->render(frame, found);
+        const RenderStats stats = technique->last_render();
+        total_ms.push_back(stats.cpu_ms + stats.gpu_ms);
+        for (const PassTime& pass : stats.passes)
+            passes_ms[pass.name].push_back(pass.ms);
+    }
+    const std::shared_ptr<FrameReceivers> receivers = context.impl().receiver_points(frame, silent);
+    fmt::print("{:44} IoU {:6.2f} %  {:7.1f} ms", spec,
+               iou_percent(receivers->points, frame, truth, found.image()), median(total_ms));
+    for (const auto& [name, ms] : passes_ms)
+        fmt::print("  {} {:.1f}", name, median(ms));
+    fmt::print("\n");
+    std::fflush(stdout);
+}
+
+int run(int argc, char** argv) {
+    if (argc < 4) fail_input("shadow_iou: SCENE VIEW.json \"TECHNIQUE [PARAMETER=VALUE...]\"...");
+    std::ifstream file(argv[2]);
+    if (!file) fail_input("{}: cannot be read", argv[2]);
+    Context context;
+    const Frame frame = frame_of(load_scene(argv[1]), nlohmann::json::parse(file));
+    const Visibility truth = trace_visibility(context, frame);
+    for (int i = 3; i < argc; ++i)
+        judge(context, frame, truth.image(), argv[i]);
+    return 0;
+}
+
+}  // namespace
+}  // namespace gnomon
+
+int main(int argc, char** argv) {
+    try {
+        return gnomon::run(argc, argv);
+    } catch (const gnomon::Error& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return error.kind() == gnomon::ErrorKind::input ? 2 : 1;
+    }
+}
