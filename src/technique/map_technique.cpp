@@ -40,7 +40,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     }
     {
         const gpu::Pass pass(commands, "depth");
-        map_.record(commands, input.scene, drawn, input.frame.ignore_alpha);
+        map_.record(commands, input.scene, drawn, input.frame.ignore_alpha, options_.reuse_maps);
     }
     const gpu::Pass pass(commands, "lookup");
     lookup_.record(commands, input.receivers, input.frame.light, layers_, map_.image(), visibility);

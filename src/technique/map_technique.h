@@ -16,6 +16,7 @@ struct MapOptions : BiasOptions {
     MapFilter filter = MapFilter::box_4x4;
     bool cull_casters = true;
     double caster_error = 0.25;
+    bool reuse_maps = false;
 
     /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
     /// across the map, and a half for rounding.
@@ -50,7 +51,11 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                          "casters whose shadow no receiver can meet are not drawn"),
         number<Options>("caster_error", &Options::caster_error, 0.0, 4.0, "texels",
                         "casters are simplified by no more than this; receivers are moved as much "
-                        "farther towards the light")};
+                        "farther towards the light"),
+        boolean<Options>(
+            "reuse_maps", &Options::reuse_maps,
+            "a map is drawn only when it would differ from the last: for lights, casters "
+            "and views that rest")};
 }
 
 /// One layer of a technique's map: where its texels are, which receivers look it up, and what can

@@ -11,6 +11,7 @@
 #include <array>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace gnomon {
 
@@ -79,33 +80,45 @@ DepthMap::DepthMap(const gpu::Device& device)
       masked_(caster_pipeline(device, true)) {}
 
 void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
-                      std::span<const MapLayer> layers, bool ignore_alpha) {
-    make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()));
+                      std::span<const MapLayer> layers, bool ignore_alpha, bool reuse) {
+    const bool is_new =
+        make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()));
     clip_from_local_.clear();
     triangles_ = 0;
-    std::vector<std::vector<CasterDraw>> draws;
+    Contents contents{.ignore_alpha = ignore_alpha};
     for (const MapLayer& layer : layers)
-        draws.push_back(place_casters(scene, layer));
+        contents.draws.push_back(place_casters(scene, layer));
+    contents.clip_from_local = clip_from_local_;
+    if (reuse && !is_new && holds(scene) && contents == drawn_) return;
+    drawn_ = std::move(contents);
+    drawn_scene_ = scene.scene().identity();
+
     upload_matrices(commands, scene.parts().size() * layers.size());
     commands.use(image_, gpu::Use::depth_target);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         commands.begin_drawing(
             {.depth = &image_, .depth_layer = static_cast<int>(i), .size = image_.size()});
-        draw(commands, scene, draws[i], ignore_alpha);
+        draw(commands, scene, drawn_.draws[i], ignore_alpha);
         commands.end_drawing();
     }
     commands.use(image_, gpu::Use::sampled);
 }
 
-void DepthMap::make_image(unsigned size_texels, unsigned layers) {
+bool DepthMap::holds(const raster::GpuScene& scene) const {
+    const std::weak_ptr<const SceneData> identity = scene.scene().identity();
+    return !drawn_scene_.owner_before(identity) && !identity.owner_before(drawn_scene_);
+}
+
+bool DepthMap::make_image(unsigned size_texels, unsigned layers) {
     const Extent size{size_texels, size_texels};
-    if (image_ && image_.size() == size && image_.info().layers == layers) return;
+    if (image_ && image_.size() == size && image_.info().layers == layers) return false;
     image_ = gpu::Image(
         device_, {.size = size,
                   .format = kDepthMapFormat,
                   .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                   .layers = layers,
                   .array = true});
+    return true;
 }
 
 std::vector<DepthMap::CasterDraw> DepthMap::place_casters(const raster::GpuScene& scene,

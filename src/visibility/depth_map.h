@@ -5,6 +5,7 @@
 #include "visibility/caster_volume.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,10 @@ public:
 
     /// Draws the casters of each layer, both sides, alpha masks honoured unless `ignore_alpha`;
     /// casters nearer than the near plane are clamped to it. The layers have one size. The map is
-    /// ready to be sampled afterwards, as an array.
+    /// ready to be sampled afterwards, as an array. With `reuse` nothing is drawn when that would
+    /// draw what is there.
     void record(gpu::Commands& commands, const raster::GpuScene& scene,
-                std::span<const MapLayer> layers, bool ignore_alpha);
+                std::span<const MapLayer> layers, bool ignore_alpha, bool reuse = false);
 
     const gpu::Image& image() const { return image_; }
     std::uint64_t memory_bytes() const {
@@ -43,9 +45,19 @@ private:
         std::uint32_t first_index, index_count;
         std::uint32_t first_instance, instance_count;
         std::uint32_t slot;  ///< of the last instance
+        bool operator==(const CasterDraw&) const = default;
+    };
+    /// All that decides what is in the map.
+    struct Contents {
+        std::vector<std::vector<CasterDraw>> draws;  ///< by layer
+        std::vector<Mat4> clip_from_local;           ///< of the casters of all layers
+        bool ignore_alpha = false;
+        bool operator==(const Contents&) const = default;
     };
 
-    void make_image(unsigned size_texels, unsigned layers);
+    /// False when there is one already.
+    bool make_image(unsigned size_texels, unsigned layers);
+    bool holds(const raster::GpuScene& scene) const;
     std::vector<CasterDraw> place_casters(const raster::GpuScene& scene, const MapLayer& layer);
     void add_part(std::vector<CasterDraw>& draws, const raster::Draw& draw,
                   const raster::CasterPart& part, const raster::CasterLevel& level,
@@ -59,6 +71,8 @@ private:
     gpu::Pipeline opaque_, masked_;
     gpu::Image image_;
     std::vector<Mat4> clip_from_local_;  // of the casters of all layers
+    Contents drawn_;
+    std::weak_ptr<const SceneData> drawn_scene_;
     gpu::Buffer instance_matrices_;
     std::uint64_t triangles_ = 0;
 };

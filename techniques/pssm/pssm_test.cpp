@@ -58,6 +58,29 @@ TEST_F(MapTechniqueTest, SimplifiedCastersChangeHardlyAPixel) {
     }
 }
 
+TEST_F(MapTechniqueTest, ReusedMapsAreThoseThatWouldBeDrawn) {
+    const std::unique_ptr<Technique> reusing =
+        make_technique(context(), "pssm", {{"reuse_maps", true}});
+    const std::unique_ptr<Technique> drawing = make_technique(context(), "pssm");
+    Frame frame = frame_of("field-small");
+    const auto expect_same = [&](const char* what) {
+        const Visibility reused = reusing->render(frame);
+        EXPECT_EQ(changed(reused, drawing->render(frame)), 0.0) << what;
+    };
+    expect_same("first");
+    expect_same("second");
+    frame.light = sun(radians(20.0f), radians(80.0f));
+    expect_same("another sun");
+    frame.camera = look_at({30, 4, 30}, {0, 1, 0});
+    expect_same("another view");
+    frame.scene = make_builtin_scene("cube");
+    expect_same("another scene");
+    frame = frame_of("courtyard");
+    expect_same("masks");
+    frame.ignore_alpha = true;
+    expect_same("masks taken for solid");
+}
+
 TEST_F(MapTechniqueTest, MoreSplitsErrLess) {
     const Frame frame = frame_of("field-small");
     const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
