@@ -116,6 +116,23 @@ TEST_P(BuiltinScene, ShadowMapHasNoArtefactsAtDefaults) {
     if (HasFailure()) leave_picture(judged, fmt::format("map_{}", GetParam()));
 }
 
+// A part of bench/bias_sweep: what it prints for all suns and filters, at one azimuth and by
+// default.
+TEST_P(BuiltinScene, SplitsHaveNoArtefactsUnderOtherSuns) {
+    const Scene scene = make_builtin_scene(GetParam());
+    if (!std::holds_alternative<DirectionalLight>(scene.lights().at(0))) {
+        GTEST_SKIP() << GetParam() << " has no sun";
+    }
+    for (const float elevation_deg : {15.0f, 35.0f, 60.0f}) {
+        const Light light = sun(radians(elevation_deg), radians(120.0f));
+        const Judged judged = judge(builtin_frame(scene, light, false), "pssm");
+        EXPECT_LE(judged.error.artefact_shadow, 0.0003) << elevation_deg;
+        EXPECT_LE(judged.error.artefact_lit, 0.001) << elevation_deg;
+        EXPECT_GT(judged.error.rmse, 0.0) << elevation_deg;
+        if (HasFailure()) leave_picture(judged, fmt::format("pssm_{}", GetParam()));
+    }
+}
+
 TEST_P(BuiltinScene, RayTracedHardShadowsAreTheTruth) {
     const Scene scene = make_builtin_scene(GetParam());
     const Judged judged =
