@@ -1,5 +1,6 @@
 #include "raster/gpu_scene.h"
 
+#include "base/parallel.h"
 #include "raster/texture_upload.h"
 
 #include <glm/matrix.hpp>
@@ -61,10 +62,27 @@ gpu::Buffer storage(const gpu::Device& device, const std::vector<T>& values,
 
 }  // namespace
 
-GpuScene::GpuScene(const gpu::Device& device, const Scene& scene) : scene_(scene) {
+GpuScene::GpuScene(const gpu::Device& device, const Scene& scene, Progress* progress)
+    : scene_(scene) {
+    make_casters(progress);
     upload_meshes(device);
     upload_materials(device);
     place_instances(device);
+}
+
+void GpuScene::make_casters(Progress* progress) {
+    casters_.resize(scene_.meshes().size());
+    parallel_for(
+        casters_.size(), 1,
+        [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const Mesh& mesh = scene_.meshes()[i];
+                const bool masked = scene_.materials()[mesh.material].masked();
+                casters_[i] =
+                    caster_mesh(mesh, kClusterTriangles, masked ? Simplify::no : Simplify::yes);
+            }
+        },
+        "simplifying casters", progress);
 }
 
 void GpuScene::upload_meshes(const gpu::Device& device) {
@@ -75,14 +93,11 @@ void GpuScene::upload_meshes(const gpu::Device& device) {
     for (const Mesh& mesh : scene_.meshes()) {
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         triangles.insert(triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
-        const bool masked = scene_.materials()[mesh.material].masked();
-        CasterMesh caster =
-            caster_mesh(mesh, kClusterTriangles, masked ? Simplify::no : Simplify::yes);
+        CasterMesh& caster = casters_[first_caster_index_.size()];
         first_caster_index_.push_back(static_cast<std::uint32_t>(3 * caster_triangles.size()));
         caster_triangles.insert(caster_triangles.end(), caster.triangles.begin(),
                                 caster.triangles.end());
         caster.triangles = {};
-        casters_.push_back(std::move(caster));
         for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
             const Vec4 color = mesh.colors.empty() ? Vec4(1.0f) : mesh.colors[i];
             attributes.push_back({mesh.normals.empty() ? Vec3(0.0f) : mesh.normals[i],

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gnomon/progress.h>
 #include <gnomon/scene.h>
 
 #include "gpu/commands.h"
@@ -34,7 +35,8 @@ struct Draw {
 /// instances of a mesh side by side, draws in the order of their material.
 class GpuScene {
 public:
-    GpuScene(const gpu::Device& device, const Scene& scene);
+    /// Throws Error{cancelled}.
+    GpuScene(const gpu::Device& device, const Scene& scene, Progress* progress = nullptr);
 
     const Scene& scene() const { return scene_; }
     const std::vector<Draw>& draws() const { return draws_; }
@@ -63,6 +65,7 @@ public:
 private:
     void place_instances(const gpu::Device& device);
     void add_parts(const Instance& instance, std::uint32_t slot, std::uint32_t first_index);
+    void make_casters(Progress* progress);
     void upload_meshes(const gpu::Device& device);
     void upload_materials(const gpu::Device& device);
 

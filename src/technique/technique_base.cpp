@@ -40,8 +40,8 @@ void TechniqueBase::render(const Frame& frame, Visibility& out, Progress& progre
         stats_.gpu_ms += pass.ms;
 }
 
-void GpuTechnique::prepare_scene(const Scene& scene, Progress&) {
-    context().gpu_scene(scene);
+void GpuTechnique::prepare_scene(const Scene& scene, Progress& progress) {
+    context().gpu_scene(scene, &progress);
 }
 
 void GpuTechnique::describe_texels(const Frame&, Visibility::Impl&) {}

@@ -47,10 +47,10 @@ Context::Impl::Impl(const ContextOptions& options) : device_(options), submissio
     }
 }
 
-const raster::GpuScene& Context::Impl::gpu_scene(const Scene& scene) {
+const raster::GpuScene& Context::Impl::gpu_scene(const Scene& scene, Progress* progress) {
     if (!gpu_scene_ || !same_scene(gpu_scene_->scene().identity(), scene)) {
         gpu_scene_.reset();  // first, so that two scenes never are in device memory at once
-        gpu_scene_ = std::make_unique<raster::GpuScene>(device_, scene);
+        gpu_scene_ = std::make_unique<raster::GpuScene>(device_, scene, progress);
     }
     return *gpu_scene_;
 }

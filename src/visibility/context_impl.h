@@ -34,7 +34,7 @@ public:
     /// For work that is recorded, submitted and waited for; never in use while a caller holds none.
     gpu::Submission& submission() { return submission_; }
 
-    const raster::GpuScene& gpu_scene(const Scene& scene);
+    const raster::GpuScene& gpu_scene(const Scene& scene, Progress* progress = nullptr);
     const trace::Tracer& tracer(const Scene& scene, bool ignore_alpha, Progress& progress);
 
     /// The receivers of the frame, drawn now unless they are those of the last call.
