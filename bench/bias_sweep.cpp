@@ -11,6 +11,8 @@
 #include <gnomon/error.h>
 #include <gnomon/gnomon.h>
 
+#include "bench_main.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -137,10 +139,5 @@ int run(int argc, char** argv) {
 }  // namespace gnomon
 
 int main(int argc, char** argv) {
-    try {
-        return gnomon::run(argc, argv);
-    } catch (const gnomon::Error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return error.kind() == gnomon::ErrorKind::input ? 2 : 1;
-    }
+    return gnomon::bench_main(argc, argv, &gnomon::run);
 }

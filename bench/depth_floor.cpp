@@ -15,6 +15,7 @@
 #include <gnomon/technique.h>
 
 #include "base/check.h"
+#include "bench_main.h"
 #include "depth_floor.vert.spv.h"
 #include "gpu/commands.h"
 #include "visibility/context_impl.h"
@@ -121,11 +122,6 @@ struct Contestant {
     bool more_than_map = false;      ///< its CPU time tells nothing
     std::vector<double> device_ms = {}, cpu_ms = {};
 };
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
 
 /// CPU time of all threads so far.
 double process_ms() {
@@ -261,10 +257,5 @@ int run(int argc, char** argv) {
 }  // namespace gnomon
 
 int main(int argc, char** argv) {
-    try {
-        return gnomon::run(argc, argv);
-    } catch (const gnomon::Error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return error.kind() == gnomon::ErrorKind::input ? 2 : 1;
-    }
+    return gnomon::bench_main(argc, argv, &gnomon::run);
 }

@@ -12,6 +12,7 @@
 #include <gnomon/gnomon.h>
 
 #include "base/check.h"
+#include "bench_main.h"
 #include "visibility/context_impl.h"
 
 #include <fmt/format.h>
@@ -77,11 +78,6 @@ std::unique_ptr<Technique> make(Context& context, const std::string& spec) {
     return make_technique(context, name, params);
 }
 
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
-
 void judge(Context& context, const Frame& frame, const Image& truth, const std::string& spec) {
     Progress silent;
     const std::unique_ptr<Technique> technique = make(context, spec);
@@ -120,10 +116,5 @@ int run(int argc, char** argv) {
 }  // namespace gnomon
 
 int main(int argc, char** argv) {
-    try {
-        return gnomon::run(argc, argv);
-    } catch (const gnomon::Error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return error.kind() == gnomon::ErrorKind::input ? 2 : 1;
-    }
+    return gnomon::bench_main(argc, argv, &gnomon::run);
 }

@@ -12,6 +12,7 @@
 #include <gnomon/error.h>
 #include <gnomon/scene.h>
 
+#include "bench_main.h"
 #include "trace/light_sample.h"
 #include "trace/tracer.h"
 
@@ -333,11 +334,6 @@ double run_bare(const BareLoop& loop, RTCScene scene, RTCIntersectContextFlags f
     return fraction(blocked);
 }
 
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
-
 void add_bare(std::vector<Contestant>& contestants, const std::string& suffix, RTCScene scene,
               const Rays& rays) {
     const std::pair<const char*, BareLoop> loops[] = {
@@ -448,10 +444,5 @@ int run(int argc, char** argv) {
 }  // namespace gnomon
 
 int main(int argc, char** argv) {
-    try {
-        return gnomon::run(argc, argv);
-    } catch (const gnomon::Error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return error.kind() == gnomon::ErrorKind::input ? 2 : 1;
-    }
+    return gnomon::bench_main(argc, argv, &gnomon::run);
 }

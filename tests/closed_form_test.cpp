@@ -91,47 +91,36 @@ bool in_cubes_shadow(double x, double z) {
     return low < high;
 }
 
-/// What a ray sees first.
-struct SeenCube {
-    double visibility;  ///< of the cube's sun
-    int surface;        ///< 0 to 2: faces of the cube across that axis; 3: the ground; 4: nothing
-    bool operator==(const SeenCube&) const = default;
-};
-
-SeenCube see_cube(const EyeRay& ray) {
+/// Visibility of the cube's sun at what the ray sees first.
+double cube_visibility(const EyeRay& ray) {
     const DVec3 low(-kHalf_m, 0.0, -kHalf_m), high(kHalf_m, kTop_m, kHalf_m);
     const DVec3 a = (low - ray.origin) / ray.direction, b = (high - ray.origin) / ray.direction;
     const DVec3 enter = glm::min(a, b), leave = glm::max(a, b);
     const double t_in = std::max({enter.x, enter.y, enter.z});
     if (t_in > 0.0 && t_in < std::min({leave.x, leave.y, leave.z})) {
-        if (t_in == enter.y) return {ray.direction.y < 0.0 ? 1.0 : 0.0, 1};
+        if (t_in == enter.y) return ray.direction.y < 0.0 ? 1.0 : 0.0;
         // A face is lit when it is the one that the sun's direction (0.8, 1, -0.6) leaves through.
         const bool lit = t_in == enter.x ? ray.direction.x < 0.0 : ray.direction.z > 0.0;
-        return {lit ? 1.0 : 0.0, t_in == enter.x ? 0 : 2};
+        return lit ? 1.0 : 0.0;
     }
     const double t_ground = -ray.origin.y / ray.direction.y;
     const DVec3 p = ray.origin + t_ground * ray.direction;
     const bool on_ground = std::isfinite(t_ground) && t_ground > 0.0 &&
                            std::max(std::abs(p.x), std::abs(p.z)) <= kGround_m;
-    return {on_ground && in_cubes_shadow(p.x, p.z) ? 0.0 : 1.0, on_ground ? 3 : 4};
+    return on_ground && in_cubes_shadow(p.x, p.z) ? 0.0 : 1.0;
 }
 
-/// The value that the picture has all over the disc of `radius_px` around a place, or none. With
-/// `one_surface` none also where the disc shows a crease: a texel across it holds the depth of
-/// either side.
-std::optional<double> value_around(const Frame& frame, double x_px, double y_px, double radius_px,
-                                   bool one_surface) {
+/// The value that the picture has all over the disc of `radius_px` around a place, or none.
+std::optional<double> value_around(const Frame& frame, double x_px, double y_px, double radius_px) {
     constexpr int kDirections = 32;
-    const SeenCube seen = see_cube(eye_ray(frame.camera, frame.size, x_px, y_px));
+    const double value = cube_visibility(eye_ray(frame.camera, frame.size, x_px, y_px));
     for (int i = 0; i < kDirections; ++i) {
         const double turn = 2.0 * kPiD * i / kDirections;
         const EyeRay ray = eye_ray(frame.camera, frame.size, x_px + radius_px * std::cos(turn),
                                    y_px + radius_px * std::sin(turn));
-        const SeenCube around = see_cube(ray);
-        if (around.visibility != seen.visibility) return std::nullopt;
-        if (one_surface && around.surface != seen.surface) return std::nullopt;
+        if (cube_visibility(ray) != value) return std::nullopt;
     }
-    return seen.visibility;
+    return value;
 }
 
 Frame cube_frame() {
@@ -143,8 +132,9 @@ Frame cube_frame() {
 }
 
 /// Fails when a pixel farther from the analytic edges than 1 px, and than (filter radius + 1.5) of
-/// the technique's texels where it has some, is not of the analytic class.
-void expect_cube(const Frame& frame, const Visibility& visibility) {
+/// the technique's texels where it has some, is not of the analytic class; but for `known_wrong` of
+/// them, a known failure.
+void expect_cube(const Frame& frame, const Visibility& visibility, std::size_t known_wrong = 0) {
     const ComparisonMask mask = comparison_mask(context(), frame);
     const Image& texel_m = visibility.texel_size_m();
     const double reach_texels = visibility.filter_radius_texels() + 1.5;
@@ -159,8 +149,7 @@ void expect_cube(const Frame& frame, const Visibility& visibility) {
             if (!texel_m.empty() && pixel_m > 0.0) {
                 radius_px += stretch * reach_texels * texel_m.at(x, y) / pixel_m;
             }
-            const auto expected =
-                value_around(frame, x + 0.5, y + 0.5, radius_px, !texel_m.empty());
+            const auto expected = value_around(frame, x + 0.5, y + 0.5, radius_px);
             if (!expected) continue;
             ++(*expected > 0.5 ? judged_lit : judged_shadow);
             const float value = visibility.image().at(x, y);
@@ -168,7 +157,7 @@ void expect_cube(const Frame& frame, const Visibility& visibility) {
             if (++wrong <= 5) where << " (" << x << ", " << y << ") is " << value;
         }
     }
-    EXPECT_EQ(wrong, 0u) << "pixels are not of the analytic class:" << where.str();
+    EXPECT_LE(wrong, known_wrong) << "pixels are not of the analytic class:" << where.str();
     EXPECT_GT(judged_lit, 30000u);
     EXPECT_GT(judged_shadow, 3000u);
 }
@@ -182,9 +171,16 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Techniques, ClosedForm, testing::ValuesIn(casting_subjects()), label);
 
+/// Known failure: a pixel at the foot of a lit wall of the cube, whose texel holds the ground, is
+/// taken for shadow. No technique's default filter has it.
+std::size_t crease_pixels(const std::string& label) {
+    if (label == "pssm_filter_nearest" || label == "lispsm_filter_dithered_4") return 1;
+    return label == "tsm_filter_dithered_4" ? 2 : 0;
+}
+
 TEST_P(ClosedForm, TheCubesShadowEndsWhereItMust) {
     const Frame frame = cube_frame();
-    expect_cube(frame, render(frame));
+    expect_cube(frame, render(frame), crease_pixels(GetParam().label));
 }
 
 TEST_P(ClosedForm, TheCubesShadowEndsWhereItMustFromAbove) {

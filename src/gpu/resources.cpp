@@ -194,8 +194,6 @@ Sampler::Sampler(const Device& device, const SamplerInfo& info) : device_(&devic
                                      .addressModeU = info.wrap_u,
                                      .addressModeV = info.wrap_v,
                                      .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                     .compareEnable = info.compare ? VK_TRUE : VK_FALSE,
-                                     .compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL,
                                      .maxLod = info.mip_levels ? VK_LOD_CLAMP_NONE : 0.0f,
                                      .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK};
     check(vkCreateSampler(device.handle(), &create, nullptr, &sampler_), "creating a sampler");

@@ -132,7 +132,6 @@ struct SamplerInfo {
     VkSamplerAddressMode wrap_u = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     VkSamplerAddressMode wrap_v = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     bool mip_levels = false;  ///< interpolate between them; else level 0 serves all
-    bool compare = false;     ///< 1 where reference >= texel (reversed depth: receiver not behind)
 };
 
 class Sampler {

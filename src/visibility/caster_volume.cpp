@@ -14,15 +14,6 @@ namespace {
 /// a flat ground under everything, and casts no shadow into it.
 constexpr double kTouching = 1e-6;
 
-/// How far the box reaches to the inner side of the plane.
-double reach(const glm::dvec4& plane, const Box3& box) {
-    const DVec3 normal(plane);
-    const DVec3 inmost(normal.x > 0.0 ? box.max.x : box.min.x,
-                       normal.y > 0.0 ? box.max.y : box.min.y,
-                       normal.z > 0.0 ? box.max.z : box.min.z);
-    return glm::dot(normal, inmost) + plane.w;
-}
-
 }  // namespace
 
 CasterVolume::CasterVolume(const LightFit& fit, DVec3 to_light_ws,

@@ -118,11 +118,6 @@ glm::dmat4 light_from_world(const DVec3& to_light, const DVec3& eye) {
     return glm::lookAtRH(eye, eye - to_light, up);
 }
 
-/// Texels along a side between the margins.
-double used_texels(unsigned size_texels, float margin_texels) {
-    return std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
-}
-
 /// What a parallel map covers, across the light.
 struct Footprint {
     glm::dmat4 light_from_world;
@@ -205,6 +200,16 @@ std::vector<DVec4> visible_planes(const Camera& camera, Extent size, const Box3&
         result.push_back(DVec4(0.0, 0.0, 0.0, bounds.max[axis]) - from_below);
     }
     return result;
+}
+
+double reach(const DVec4& plane, const Box3& box) {
+    const DVec3 inmost(plane.x > 0.0 ? box.max.x : box.min.x, plane.y > 0.0 ? box.max.y : box.min.y,
+                       plane.z > 0.0 ? box.max.z : box.min.z);
+    return height(plane, inmost);
+}
+
+double used_texels(unsigned size_texels, float margin_texels) {
+    return std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
 }
 
 // A step across the light moves the map's image by the 2x3 matrix of the gradients of its
@@ -292,10 +297,8 @@ LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texe
     // Nearer than this to the light nothing is resolved; reversed Z keeps precision all the same.
     constexpr double kNearFraction = 1e-4;
     const double near_m = kNearFraction * std::max(bounds.diagonal(), 1e-3f);
-    const double used_texels =
-        std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
-    const double half =
-        std::tan(static_cast<double>(light.outer_angle_rad)) * size_texels / used_texels;
+    const double half = std::tan(static_cast<double>(light.outer_angle_rad)) * size_texels /
+                        used_texels(size_texels, margin_texels);
 
     const DVec3 axis = glm::normalize(DVec3(light.direction_ws));
     const glm::dmat4 view = light_from_world(-axis, DVec3(light.position_ws));

@@ -25,6 +25,12 @@ std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3
 std::vector<glm::dvec4> visible_planes(const Camera& camera, Extent size, const Box3& bounds,
                                        DepthRange range = {});
 
+/// How far a box reaches to the inner side of such a plane, in metres.
+double reach(const glm::dvec4& plane, const Box3& box);
+
+/// Texels along a side of a map between its margins.
+double used_texels(unsigned size_texels, float margin_texels);
+
 /// From a texel to the next ones, in metres of the world, across the light.
 struct TexelSteps {
     Vec3 u_ws{0.0f}, v_ws{0.0f};

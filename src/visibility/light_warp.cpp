@@ -124,7 +124,7 @@ LightFit fit_warped(Warp warp, double focus, const DirectionalLight& light, cons
         const DVec4 p_cs = warped * DVec4(p, 1.0);
         image.include(DVec3(p_cs) / p_cs.w);
     }
-    const double used = std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
+    const double used = used_texels(size_texels, margin_texels);
     const double depth_margin = kDepthMargin * std::max(image.high.z - image.low.z, 1e-12);
     const DVec3 size =
         glm::max(image.high - image.low, DVec3(1e-12)) + DVec3(0.0, 0.0, 2.0 * depth_margin);

@@ -1,5 +1,5 @@
-// Where a receiver is looked up: moved off its surface and towards the light, by what the texels of its
-// own plane demand over the filter's reach, so that they never hide it. D. Holbert, "Saying Goodbye to
+// Where a receiver is looked up, and the plane that its texels are compared with: it is moved off its
+// surface and towards the light by what a plane would demand over some reach. D. Holbert, "Saying Goodbye to
 // Shadow Acne", GDC 2011, for the normal offset; S. Kozlov, "Perspective Shadow Maps: Care and Feeding",
 // GPU Gems 2004, chapter 14, for a bias in the world that follows the texel. Departure: what a plane
 // demands is computed exactly from the map's matrix, for any projection.

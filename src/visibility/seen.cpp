@@ -10,13 +10,6 @@ namespace gnomon {
 
 namespace {
 
-/// How far the box reaches to the inner side of the plane.
-double reach(const glm::dvec4& plane, const Box3& box) {
-    const DVec3 inmost(plane.x > 0.0 ? box.max.x : box.min.x, plane.y > 0.0 ? box.max.y : box.min.y,
-                       plane.z > 0.0 ? box.max.z : box.min.z);
-    return glm::dot(DVec3(plane), inmost) + plane.w;
-}
-
 /// Of all of the box, seen or not.
 DepthRange depth_range(const glm::dvec4& depth, const Box3& box) {
     return {-reach(-depth, box), reach(depth, box)};
