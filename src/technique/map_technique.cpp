@@ -28,15 +28,30 @@ PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& see
                      static_cast<double>(frame.scene.bounds().diagonal()))};
 }
 
+PlannedLayer MapTechnique::local_layer(const Frame& frame, const Seen& seen, const LightView& view,
+                                       bool tight) const {
+    const std::vector<DVec3> receivers_ws =
+        visible_corners(frame.camera, frame.size, seen.bounds, seen.range, view.planes());
+    const LightFit fit =
+        fit_view(tight && !receivers_ws.empty() ? fitted(view, receivers_ws) : view,
+                 frame.scene.bounds(), options_.size_texels(), options_.margin_texels());
+    return {{fit},
+            CasterVolume(fit, visible_planes(frame.camera, frame.size, seen.bounds, seen.range),
+                         view.position_ws),
+            !receivers_ws.empty()};
+}
+
 void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                           gpu::Image& visibility) {
     std::vector<MapLayer> drawn;
-    layers_.clear();
     const Seen seen = seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
-    for (const PlannedLayer& layer : plan(input.frame, seen)) {
+    const MapPlan planned = plan(input.frame, seen);
+    layers_ = {.choice = planned.choice};
+    for (const PlannedLayer& layer : planned.layers) {
         drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume(),
-                         static_cast<float>(options_.caster_error)});
-        layers_.push_back(layer.lookup);
+                         static_cast<float>(options_.caster_error),
+                         layer.needed || !options_.cull_casters});
+        layers_.layers.push_back(layer.lookup);
     }
     {
         const gpu::Pass pass(commands, "depth");
@@ -49,7 +64,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
 void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {
     out.set_texels(
         [layers = layers_, camera = frame.camera](Vec3 p_ws) {
-            return layers[layer_of(layers, camera, p_ws)].fit.texel_size_m(p_ws);
+            return layers.layers[layer_of(layers, camera, p_ws)].fit.texel_size_m(p_ws);
         },
         filter_radius_texels(options_.filter), frame);
 }

@@ -2,6 +2,7 @@
 
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
+#include "visibility/light_view.h"
 #include "visibility/map_lookup.h"
 #include "visibility/seen.h"
 
@@ -63,6 +64,12 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
 struct PlannedLayer {
     LookupLayer lookup;
     CasterVolume casters;
+    bool needed = true;  ///< false: no receiver looks there
+};
+
+struct MapPlan {
+    LayerChoice choice = LayerChoice::by_distance;
+    std::vector<PlannedLayer> layers;  ///< by distance: in its order
 };
 
 /// A technique with a depth map: says where its texels go. Everything else is alike for all.
@@ -70,12 +77,16 @@ class MapTechnique : public GpuTechnique {
 protected:
     MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options);
 
-    /// The layers of the frame's map, in the order of their receivers' distance from the camera.
-    virtual std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const = 0;
+    /// The layers of the frame's map.
+    virtual MapPlan plan(const Frame& frame, const Seen& seen) const = 0;
 
     /// A layer of the map of a light at infinity, for the receivers within a range of distances.
     static PlannedLayer directional_layer(const Frame& frame, const Seen& seen, const LightFit& fit,
                                           DepthRange range);
+
+    /// A layer of the map of a light within the world. Tight: fitted to the receivers in its view.
+    PlannedLayer local_layer(const Frame& frame, const Seen& seen, const LightView& view,
+                             bool tight) const;
 
 private:
     void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) final;
@@ -87,7 +98,7 @@ private:
     MapOptions options_;
     DepthMap map_;
     MapLookup lookup_;
-    std::vector<LookupLayer> layers_;  // of the last frame
+    LookupLayers layers_;  // of the last frame
 };
 
 }  // namespace gnomon

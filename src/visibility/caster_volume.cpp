@@ -25,7 +25,11 @@ CasterVolume::CasterVolume(const LightFit& fit, DVec3 to_light_ws,
     add_sides(fit);
 }
 
-CasterVolume::CasterVolume(const LightFit& fit) {
+CasterVolume::CasterVolume(const LightFit& fit, std::span<const glm::dvec4> planes_ws,
+                           DVec3 light_ws) {
+    for (const glm::dvec4& plane : planes_ws) {
+        if (glm::dot(DVec3(plane), light_ws) + plane.w >= 0.0) planes_.push_back(plane);
+    }
     add_sides(fit);
 }
 

@@ -23,7 +23,7 @@ public:
     CasterVolume(const LightFit& fit, DVec3 to_light_ws, std::span<const glm::dvec4> planes_ws,
                  double scene_size_m);
     /// Of a light within the world.
-    explicit CasterVolume(const LightFit& fit);
+    CasterVolume(const LightFit& fit, std::span<const glm::dvec4> planes_ws, DVec3 light_ws);
 
     /// False only when nothing in the box can cast a shadow into the map.
     bool holds(const Box3& box_ws) const;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr VkFormat kDepthMapFormat = VK_FORMAT_D32_SFLOAT;
 
-gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked) {
+gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamps_near) {
     gpu::GraphicsPipelineInfo info;
     if (masked) {
         using enum gpu::BindingType;
@@ -31,7 +31,7 @@ gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked) {
         info.vertex = shaders::caster_vert;
     }
     info.depth_format = kDepthMapFormat;
-    info.depth_clamp = true;
+    info.depth_clamp = clamps_near;
     raster::set_position_input(info);
     info.instance_stride = sizeof(Mat4);
     for (std::uint32_t column = 0; column < 4; ++column) {
@@ -76,8 +76,8 @@ const raster::CasterLevel& level_for(const MapLayer& layer,
 
 DepthMap::DepthMap(const gpu::Device& device)
     : device_(device),
-      opaque_(caster_pipeline(device, false)),
-      masked_(caster_pipeline(device, true)) {}
+      pipelines_{{{caster_pipeline(device, false, false), caster_pipeline(device, true, false)},
+                  {caster_pipeline(device, false, true), caster_pipeline(device, true, true)}}} {}
 
 void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                       std::span<const MapLayer> layers, bool ignore_alpha, bool reuse) {
@@ -86,8 +86,11 @@ void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
     clip_from_local_.clear();
     triangles_ = 0;
     Contents contents{.ignore_alpha = ignore_alpha};
-    for (const MapLayer& layer : layers)
-        contents.draws.push_back(place_casters(scene, layer));
+    for (const MapLayer& layer : layers) {
+        contents.needed.push_back(layer.needed);
+        contents.draws.push_back(layer.needed ? place_casters(scene, layer)
+                                              : std::vector<CasterDraw>());
+    }
     contents.clip_from_local = clip_from_local_;
     if (reuse && !is_new && holds(scene) && contents == drawn_) return;
     drawn_ = std::move(contents);
@@ -96,9 +99,10 @@ void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
     upload_matrices(commands, scene.parts().size() * layers.size());
     commands.use(image_, gpu::Use::depth_target);
     for (std::size_t i = 0; i < layers.size(); ++i) {
+        if (!layers[i].needed) continue;
         commands.begin_drawing(
             {.depth = &image_, .depth_layer = static_cast<int>(i), .size = image_.size()});
-        draw(commands, scene, drawn_.draws[i], ignore_alpha);
+        draw(commands, scene, drawn_.draws[i], layers[i].fit.clamps_near, ignore_alpha);
         commands.end_drawing();
     }
     commands.use(image_, gpu::Use::sampled);
@@ -177,7 +181,8 @@ void DepthMap::upload_matrices(gpu::Commands& commands, std::size_t most) {
 }
 
 void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene,
-                    std::span<const CasterDraw> draws, bool ignore_alpha) const {
+                    std::span<const CasterDraw> draws, bool clamps_near, bool ignore_alpha) const {
+    const Pipelines& pipelines = pipelines_[clamps_near ? 1 : 0];
     const std::array buffers{scene.positions().handle(), instance_matrices_.handle()};
     const std::array<VkDeviceSize, 2> offsets{};
     vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers.data(), offsets.data());
@@ -187,14 +192,14 @@ void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene,
     for (const CasterDraw& caster : draws) {
         const raster::Draw& draw = *caster.draw;
         if (draw.masked && !ignore_alpha) {
-            commands.bind(
-                masked_, {gpu::StorageBuffer{&scene.attributes()},
-                          gpu::StorageBuffer{&scene.materials()}, scene.base_color(draw.material)});
-            commands.push(masked_, raster::shared::CasterPush{draw.material});
-            bound = &masked_;
-        } else if (bound != &opaque_) {
-            commands.bind(opaque_, {});
-            bound = &opaque_;
+            commands.bind(pipelines.masked, {gpu::StorageBuffer{&scene.attributes()},
+                                             gpu::StorageBuffer{&scene.materials()},
+                                             scene.base_color(draw.material)});
+            commands.push(pipelines.masked, raster::shared::CasterPush{draw.material});
+            bound = &pipelines.masked;
+        } else if (bound != &pipelines.opaque) {
+            commands.bind(pipelines.opaque, {});
+            bound = &pipelines.opaque;
         }
         vkCmdDrawIndexed(commands.handle(), caster.index_count, caster.instance_count,
                          caster.first_index, static_cast<std::int32_t>(draw.first_vertex),

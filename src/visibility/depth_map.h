@@ -4,6 +4,7 @@
 #include "raster/gpu_scene.h"
 #include "visibility/caster_volume.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -16,6 +17,7 @@ struct MapLayer {
     LightFit fit;
     CasterVolume casters;
     float caster_error_texels = 0.0f;  ///< how far simplified casters may be off; 0: none are
+    bool needed = true;                ///< nothing is looked up in a layer that is not
 };
 
 /// A depth map of one or more square layers: D32, reversed, so that 1 is nearest to the light and 0
@@ -24,10 +26,9 @@ class DepthMap {
 public:
     explicit DepthMap(const gpu::Device& device);
 
-    /// Draws the casters of each layer, both sides, alpha masks honoured unless `ignore_alpha`;
-    /// casters nearer than the near plane are clamped to it. The layers have one size. The map is
-    /// ready to be sampled afterwards, as an array. With `reuse` nothing is drawn when that would
-    /// draw what is there.
+    /// Draws the casters of each layer, both sides, alpha masks honoured unless `ignore_alpha`. The
+    /// layers have one size. The map is ready to be sampled afterwards, as an array. With `reuse`
+    /// nothing is drawn when that would draw what is there.
     void record(gpu::Commands& commands, const raster::GpuScene& scene,
                 std::span<const MapLayer> layers, bool ignore_alpha, bool reuse = false);
 
@@ -49,6 +50,7 @@ private:
     };
     /// All that decides what is in the map.
     struct Contents {
+        std::vector<bool> needed;                    ///< by layer
         std::vector<std::vector<CasterDraw>> draws;  ///< by layer
         std::vector<Mat4> clip_from_local;           ///< of the casters of all layers
         bool ignore_alpha = false;
@@ -65,10 +67,13 @@ private:
     /// `most`: how many there can be in any frame of this scene.
     void upload_matrices(gpu::Commands& commands, std::size_t most);
     void draw(gpu::Commands& commands, const raster::GpuScene& scene,
-              std::span<const CasterDraw> draws, bool ignore_alpha) const;
+              std::span<const CasterDraw> draws, bool clamps_near, bool ignore_alpha) const;
 
     const gpu::Device& device_;
-    gpu::Pipeline opaque_, masked_;
+    struct Pipelines {
+        gpu::Pipeline opaque, masked;
+    };
+    std::array<Pipelines, 2> pipelines_;  // clipping at the near plane, and clamping to it
     gpu::Image image_;
     std::vector<Mat4> clip_from_local_;  // of the casters of all layers
     Contents drawn_;

@@ -1,6 +1,5 @@
 #include "visibility/light_fit.h"
 
-#include "base/check.h"
 #include "visibility/smallest_rectangle.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
@@ -64,6 +63,26 @@ std::vector<DVec4> planes(const std::array<DVec3, 8>& corners) {
         result.emplace_back(normal, -glm::dot(normal, face[0]));
     }
     return result;
+}
+
+/// Corners of the convex body within all planes, some more than once; it lies within a ball. A
+/// corner lies in three planes: what the others leave of each plane's own polygon has it.
+std::vector<DVec3> corners_of(std::span<const DVec4> sides, const DVec3& center, double radius_m) {
+    std::vector<DVec3> corners;
+    for (const DVec4& side : sides) {
+        const DVec3 normal(side);
+        const DVec3 u =
+            radius_m * glm::normalize(glm::cross(
+                           normal, std::abs(normal.x) < 0.6 ? DVec3(1, 0, 0) : DVec3(0, 1, 0)));
+        const DVec3 v = glm::cross(normal, u);
+        const DVec3 middle = center - height(side, center) * normal;
+        Polygon polygon{middle - u - v, middle + u - v, middle + u + v, middle - u + v};
+        for (const DVec4& other : sides) {
+            if (&other != &side) polygon = clip(polygon, other);
+        }
+        corners.insert(corners.end(), polygon.begin(), polygon.end());
+    }
+    return corners;
 }
 
 std::array<DVec3, 8> box_corners(const Box3& box, double grow_m) {
@@ -165,26 +184,18 @@ LightFit parallel_fit(const Footprint& footprint, CastersRange range, unsigned s
 }  // namespace
 
 std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds,
-                                   DepthRange range) {
+                                   DepthRange range, std::span<const DVec4> within) {
     if (bounds.empty()) return {};
     const double grow_m = kGrowth * std::max(bounds.diagonal(), 1e-3f);
     const std::array<DVec3, 8> box = box_corners(bounds, grow_m);
     range = range_within(camera, box, range);
     if (range.far_m <= range.near_m) return {};
-    const std::array<DVec3, 8> frustum = frustum_corners(camera, size, range);
-
-    std::vector<DVec3> corners;
-    const auto add = [&](const std::array<DVec3, 8>& from, const std::array<DVec3, 8>& by) {
-        const std::vector<DVec4> clip_planes = planes(by);
-        for (Polygon face : faces(from)) {
-            for (const DVec4& plane : clip_planes)
-                face = clip(face, plane);
-            corners.insert(corners.end(), face.begin(), face.end());
-        }
-    };
-    add(box, frustum);
-    add(frustum, box);
-    return corners;
+    std::vector<DVec4> sides = planes(box);
+    for (const DVec4& plane : planes(frustum_corners(camera, size, range)))
+        sides.push_back(plane);
+    sides.insert(sides.end(), within.begin(), within.end());
+    return corners_of(sides, DVec3(bounds.center()),
+                      static_cast<double>(bounds.diagonal()) + 2.0 * grow_m);
 }
 
 std::vector<DVec4> visible_planes(const Camera& camera, Extent size, const Box3& bounds,
@@ -285,32 +296,6 @@ LightFit fit_directional_stable(const DirectionalLight& light, const Camera& cam
     const glm::dvec2 snapped = glm::floor(middle / texel_m + 0.5) * texel_m;
     return parallel_fit({view, snapped, {1.0, 0.0}, glm::dvec2(side_m)},
                         casters_range(view, bounds), size_texels, margin);
-}
-
-LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texels,
-                  float margin_texels) {
-    constexpr float kMaxHalfAngleRad = radians(80.0f);
-    if (light.outer_angle_rad > kMaxHalfAngleRad) {
-        fail_input("a spot of {:.4g}° does not fit one map; at most 160° do",
-                   2.0f * degrees(light.outer_angle_rad));
-    }
-    // Nearer than this to the light nothing is resolved; reversed Z keeps precision all the same.
-    constexpr double kNearFraction = 1e-4;
-    const double near_m = kNearFraction * std::max(bounds.diagonal(), 1e-3f);
-    const double half = std::tan(static_cast<double>(light.outer_angle_rad)) * size_texels /
-                        used_texels(size_texels, margin_texels);
-
-    const DVec3 axis = glm::normalize(DVec3(light.direction_ws));
-    const glm::dmat4 view = light_from_world(-axis, DVec3(light.position_ws));
-    glm::dmat4 clip(0.0);
-    clip[0][0] = clip[1][1] = 1.0 / half;
-    clip[3][2] = near_m;
-    clip[2][3] = -1.0;
-    LightFit fit;
-    fit.clip_from_world = Mat4(clip * view);
-    fit.size_texels = size_texels;
-    fit.affine = false;
-    return fit;
 }
 
 }  // namespace gnomon

@@ -16,10 +16,11 @@ struct DepthRange {
     double far_m = std::numeric_limits<double>::infinity();
 };
 
-/// Corners of the part of `bounds` that the camera sees between two distances: a convex polytope,
-/// empty when it sees none. All receivers of the frame that are so far lie within it.
+/// Corners of the part of `bounds` that the camera sees between two distances, on the inner side of
+/// all planes (unit normal inwards, offset) of `within`: a convex polytope, empty when there is
+/// none. All receivers of the frame that are there lie within it.
 std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds,
-                                   DepthRange range = {});
+                                   DepthRange range = {}, std::span<const glm::dvec4> within = {});
 
 /// Planes (unit normal inwards, offset) around the same part of `bounds`; none when it is empty.
 std::vector<glm::dvec4> visible_planes(const Camera& camera, Extent size, const Box3& bounds,
@@ -41,6 +42,9 @@ struct LightFit {
     Mat4 clip_from_world{1.0f};  ///< reversed Z: 1 nearest to the light
     unsigned size_texels = 1;    ///< of a side
     bool affine = true;          ///< all texels are of one size
+    /// Casters nearer than the near plane are clamped to it, as a light at infinity wants; else
+    /// they are not seen.
+    bool clamps_near = true;
 
     /// Side of a texel at a point of the world, in metres, across the light; the longer one where
     /// the map stretches it. 0 behind a light.
@@ -62,9 +66,5 @@ LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> r
 LightFit fit_directional_stable(const DirectionalLight& light, const Camera& camera, Extent size,
                                 DepthRange range, const Box3& bounds, unsigned size_texels,
                                 float margin_texels);
-
-/// A square map around a spot's cone. Throws Error{input} when the cone is wider than 160°.
-LightFit fit_spot(const SpotLight& light, const Box3& bounds, unsigned size_texels,
-                  float margin_texels);
 
 }  // namespace gnomon

@@ -1,4 +1,4 @@
-#include "visibility/light_fit.h"
+#include "visibility/light_fit_test.h"
 
 #include <gnomon/error.h>
 
@@ -14,60 +14,7 @@
 namespace gnomon {
 namespace {
 
-constexpr unsigned kMapSize = 1024;
-constexpr float kMarginTexels = 3.0f;
-
-/// Greatest |x| and |y| of what must be within the margin.
-constexpr double kInnerNdc = 1.0 - 2.0 * kMarginTexels / kMapSize;
-
-/// A point in a light's map, and how far rounding the map's matrix to float may have moved it.
-struct Projected {
-    DVec3 ndc;
-    DVec3 rounding;
-};
-
-Projected project(const LightFit& fit, DVec3 p_ws) {
-    constexpr double kRoundoff = 1.0 / (1 << 24);
-    const glm::dmat4 clip(fit.clip_from_world);
-    const glm::dvec4 p = clip * glm::dvec4(p_ws, 1.0);
-    glm::dvec4 rounding(0.0);
-    for (int column = 0; column < 4; ++column) {
-        rounding += glm::abs(clip[column]) * (column < 3 ? std::abs(p_ws[column]) : 1.0);
-    }
-    rounding *= kRoundoff;
-    return {DVec3(p) / p.w,
-            (DVec3(rounding) + glm::abs(DVec3(p)) / p.w * rounding.w) / std::abs(p.w)};
-}
-
-bool is_finite(const LightFit& fit) {
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) {
-            if (!std::isfinite(fit.clip_from_world[column][row])) return false;
-        }
-    }
-    return true;
-}
-
-class Random {
-public:
-    explicit Random(unsigned seed) : engine_(seed) {}
-    float uniform(float low, float high) {
-        return std::uniform_real_distribution<float>(low, high)(engine_);
-    }
-    Vec3 point(Vec3 low, Vec3 high) {
-        return {uniform(low.x, high.x), uniform(low.y, high.y), uniform(low.z, high.z)};
-    }
-    Vec3 direction() {
-        for (;;) {
-            const Vec3 v = point(Vec3(-1), Vec3(1));
-            const float length = glm::length(v);
-            if (length > 0.1f && length < 1.0f) return v / length;
-        }
-    }
-
-private:
-    std::mt19937 engine_;
-};
+using namespace test;
 
 struct RandomView {
     Box3 bounds;
@@ -138,8 +85,6 @@ void add_points_before(const RandomView& view, Random& random, std::vector<Vec3>
             points.push_back(p);
     }
 }
-
-constexpr unsigned kViews = 400;
 
 TEST(VisibleCorners, EncloseWhatIsSeen) {
     Random random(1);
@@ -255,12 +200,6 @@ TEST(FitDirectional, HasEveryCasterBetweenItsPlanesNearestFirst) {
     }
 }
 
-/// How many texels the map's image of p moves when p moves by `step_ws`.
-double texels_moved(const LightFit& fit, DVec3 p_ws, DVec3 step_ws) {
-    const DVec3 moved = project(fit, p_ws + step_ws).ndc - project(fit, p_ws).ndc;
-    return 0.5 * kMapSize * std::hypot(moved.x, moved.y);
-}
-
 TEST(FitDirectional, KnowsTheSizeOfItsTexels) {
     Random random(6);
     for (unsigned i = 0; i < kViews; ++i) {
@@ -359,94 +298,6 @@ TEST(FitDirectional, CopesWithMapsOfHardlyMoreThanTheirMargin) {
         EXPECT_TRUE(
             is_finite(fit_directional({.to_light_ws = {0, 1, 0}},
                                       visible_corners(camera, {16, 9}, box), box, map_size, 3.0f)));
-    }
-}
-
-struct RandomSpot {
-    SpotLight light;
-    Box3 bounds;
-};
-
-RandomSpot random_spot(Random& random) {
-    const float scale_m = std::pow(10.0f, random.uniform(-1.0f, 2.0f));
-    RandomSpot spot;
-    spot.light.position_ws = scale_m * random.point(Vec3(-2), Vec3(2));
-    spot.light.direction_ws = random.direction();
-    spot.light.outer_angle_rad = radians(random.uniform(1.0f, 80.0f));
-    spot.bounds.include(Vec3(-scale_m));
-    spot.bounds.include(Vec3(scale_m));
-    return spot;
-}
-
-TEST(FitSpot, HoldsItsConeWithinItsMargin) {
-    Random random(7);
-    for (unsigned i = 0; i < kViews; ++i) {
-        const auto [light, bounds] = random_spot(random);
-        const LightFit fit = fit_spot(light, bounds, kMapSize, kMarginTexels);
-        ASSERT_TRUE(is_finite(fit));
-        double reach = 0.0;
-        const Vec3 across = normalize(glm::cross(light.direction_ws, random.direction()));
-        const Vec3 other = glm::cross(light.direction_ws, across);
-        constexpr int kRimPoints = 360;
-        for (int k = 0; k < kRimPoints; ++k) {
-            const float turn = 2.0f * kPi * static_cast<float>(k) / kRimPoints;
-            const Vec3 radial = std::cos(turn) * across + std::sin(turn) * other;
-            const Vec3 rim =
-                light.position_ws +
-                bounds.diagonal() * (std::cos(light.outer_angle_rad) * light.direction_ws +
-                                     std::sin(light.outer_angle_rad) * radial);
-            const Projected at = project(fit, DVec3(rim));
-            reach = std::max({reach, std::abs(at.ndc.x), std::abs(at.ndc.y)});
-        }
-        // The rim touches the margin; it is sampled each degree, and computed in float.
-        EXPECT_NEAR(reach, kInnerNdc, 1e-4);
-    }
-}
-
-TEST(FitSpot, HasReversedDepthWithoutAFarPlane) {
-    Random random(8);
-    for (unsigned i = 0; i < kViews; ++i) {
-        const auto [light, bounds] = random_spot(random);
-        const LightFit fit = fit_spot(light, bounds, kMapSize, kMarginTexels);
-        double before = 1.0;
-        for (const double fraction : {1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3}) {
-            const DVec3 p =
-                DVec3(light.position_ws) + fraction * bounds.diagonal() * DVec3(light.direction_ws);
-            const double depth = project(fit, p).ndc.z;
-            EXPECT_LT(depth, before);
-            EXPECT_GT(depth, 0.0);
-            before = depth;
-        }
-    }
-}
-
-TEST(FitSpot, KnowsTheSizeOfItsTexels) {
-    Random random(9);
-    for (unsigned i = 0; i < kViews; ++i) {
-        const auto [light, bounds] = random_spot(random);
-        const LightFit fit = fit_spot(light, bounds, kMapSize, kMarginTexels);
-        const Vec3 across = normalize(glm::cross(light.direction_ws, random.direction()));
-        const float distance_m = bounds.diagonal() * random.uniform(0.1f, 2.0f);
-        const Vec3 p = light.position_ws + distance_m * (light.direction_ws + 0.3f * across);
-        const Vec3 aside = normalize(glm::cross(light.direction_ws, random.direction()));
-        const double texel_m = fit.texel_size_m(p);
-        EXPECT_NEAR(texels_moved(fit, DVec3(p), 10.0 * texel_m * DVec3(aside)), 10.0, 1e-2);
-    }
-    SpotLight light;
-    EXPECT_EQ(fit_spot(light, {}, kMapSize, 0).texel_size_m({0, 5, 0}), 0.0f);  // behind it
-}
-
-TEST(FitSpot, RefusesConesThatNoMapHolds) {
-    SpotLight light;
-    light.outer_angle_rad = radians(80.0f);
-    EXPECT_NO_THROW(fit_spot(light, {}, kMapSize, kMarginTexels));
-    light.outer_angle_rad = radians(81.0f);
-    try {
-        fit_spot(light, {}, kMapSize, kMarginTexels);
-        FAIL() << "a cone of 162° was fitted";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find("160"), std::string::npos) << error.what();
     }
 }
 

@@ -13,6 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 1) const uint kFilter = kFilterBox4x4;
 layout(constant_id = 2) const uint kLayerCount = 1u;
 layout(constant_id = 3) const uint kAffine = 1u;  // all texels of a layer are of one size
+layout(constant_id = 4) const uint kLayerChoice = kChooseByDistance;
 
 layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
@@ -32,13 +33,15 @@ struct Layer {
     float index;
 };
 
-// The last layer that begins before the receiver. All are read and one is chosen, number by number: an
-// index that differs between pixels would be followed pixel by pixel.
-Layer layer_of(float depth) {
+// The last layer that begins before the receiver, or the one along whose axis it is farthest. All are read
+// and one is chosen, number by number: an index that differs between pixels would be followed pixel by pixel.
+Layer layer_of(float depth, vec3 p_ws) {
     Layer layer = Layer(frame.layers[0], 0.0);
     for (uint i = 1u; i < kLayerCount; ++i) {
         MapLayerFrame next = frame.layers[i];
-        bool chosen = depth < next.first_depth;
+        bool chosen = kLayerChoice == kChooseByDistance
+                          ? depth < next.first_depth
+                          : dot(next.w, vec4(p_ws, 1.0)) > dot(layer.map.w, vec4(p_ws, 1.0));
         layer.map.u = mix(layer.map.u, next.u, bvec4(chosen));
         layer.map.v = mix(layer.map.v, next.v, bvec4(chosen));
         layer.map.z = mix(layer.map.z, next.z, bvec4(chosen));
@@ -74,8 +77,9 @@ float lit_by_map(vec3 p_ws, TexelAt texel, Layer layer, uvec2 pixel) {
                          pixel);
     // Weights sum to 1 but for rounding: what is all but lit or dark is.
     lit = clamp((1.0 + 2.0 * kRounding) * lit - kRounding, 0.0, 1.0);
-    // A map of the sun holds all receivers; what the bias moves across its border is looked up there.
-    if (kLightKind == kLightDirectional) return lit;
+    // Maps that are chosen among by their axis hold all receivers, and so do the sun's; what the bias moves
+    // across their border is looked up there.
+    if (kLightKind == kLightDirectional || kLayerChoice == kChooseByAxis) return lit;
     bool inside = w > 0.0 && all(lessThanEqual(abs(uvz.xy - 0.5), vec2(0.5)));
     return inside ? lit : 1.0;
 }
@@ -89,7 +93,7 @@ void main() {
     vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, max(depth, kLeastDepth));
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
     vec3 to_light = normalize(to_light_ws(push.light, p_ws));
-    Layer layer = layer_of(depth);
+    Layer layer = layer_of(depth, p_ws);
     TexelAt texel = kAffine != 0u
                         ? affine_texel(layer.map, normal_ws, to_light)
                         : projective_texel(layer.map, frame.size_texels, p_ws, normal_ws);

@@ -12,6 +12,8 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <span>
+#include <utility>
 
 namespace gnomon {
 
@@ -19,13 +21,12 @@ namespace {
 
 constexpr unsigned kGroupSize = 8;
 
-gpu::ComputePipelineInfo lookup_info(MapFilter filter, std::size_t layers, bool affine) {
+gpu::ComputePipelineInfo lookup_info(std::vector<std::uint32_t> constants) {
     using enum gpu::BindingType;
     return {.code = shaders::map_lookup_comp,
             .layout = {{texture, storage_image, storage_image, texture, uniform_buffer},
                        sizeof(shared::ReceiverPush)},
-            .constants = {static_cast<std::uint32_t>(filter), static_cast<std::uint32_t>(layers),
-                          affine ? 1u : 0u}};
+            .constants = std::move(constants)};
 }
 
 shared::MapLayerFrame layer_frame(const LightFit& fit) {
@@ -71,11 +72,19 @@ float depth_at(const Camera& camera, Extent size, double distance_m) {
     return static_cast<float>(p.z / p.w);
 }
 
-std::size_t layer_of(std::span<const LookupLayer> layers, const Camera& camera, Vec3 p_ws) {
+std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws) {
+    const std::span all(layers.layers);
+    if (layers.choice == LayerChoice::by_axis) {
+        const auto along = [&](const LookupLayer& layer) {
+            return (layer.fit.clip_from_world * Vec4(p_ws, 1.0f)).w;
+        };
+        return static_cast<std::size_t>(
+            std::distance(all.begin(), std::ranges::max_element(all, {}, along)));
+    }
     const double distance_m = -(camera.view_from_world * Vec4(p_ws, 1.0f)).z;
     const auto after = std::ranges::find_if(
-        layers.subspan(1), [&](const LookupLayer& layer) { return distance_m <= layer.from_m; });
-    return static_cast<std::size_t>(std::distance(layers.subspan(1).begin(), after));
+        all.subspan(1), [&](const LookupLayer& layer) { return distance_m <= layer.from_m; });
+    return static_cast<std::size_t>(std::distance(all.subspan(1).begin(), after));
 }
 
 MapLookup::MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias)
@@ -91,15 +100,21 @@ MapLookup::MapLookup(const gpu::Device& device, MapFilter filter, const BiasOpti
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
              gpu::Placement::device) {}
 
-LookupPipeline& MapLookup::pipeline(std::size_t layers, bool affine) {
-    LookupPipeline& pipeline = pipelines_[layers][affine ? 1 : 0];
-    if (!pipeline) pipeline = LookupPipeline(device_, lookup_info(filter_, layers, affine));
+LookupPipeline& MapLookup::pipeline(const LookupLayers& layers) {
+    const bool affine = std::ranges::all_of(
+        layers.layers, [](const LookupLayer& layer) { return layer.fit.affine; });
+    const std::vector<std::uint32_t> constants{
+        static_cast<std::uint32_t>(filter_), static_cast<std::uint32_t>(layers.layers.size()),
+        affine ? 1u : 0u, static_cast<std::uint32_t>(layers.choice)};
+    LookupPipeline& pipeline = pipelines_[constants];
+    if (!pipeline) pipeline = LookupPipeline(device_, lookup_info(constants));
     return pipeline;
 }
 
 void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receivers,
-                       const Light& light, std::span<const LookupLayer> layers,
-                       const gpu::Image& map, gpu::Image& visibility) {
+                       const Light& light, const LookupLayers& lookup_layers, const gpu::Image& map,
+                       gpu::Image& visibility) {
+    const std::vector<LookupLayer>& layers = lookup_layers.layers;
     assert(!layers.empty() && layers.size() <= shared::kMaxMapLayers);
     shared::MapFrame frame{};
     frame.bias = bias_;
@@ -111,9 +126,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     }
     commands.update(frame_, frame);
     commands.use(visibility, gpu::Use::storage_write);
-    const bool affine =
-        std::ranges::all_of(layers, [](const LookupLayer& layer) { return layer.fit.affine; });
-    const gpu::Pipeline& lookup = pipeline(layers.size(), affine).of(light);
+    const gpu::Pipeline& lookup = pipeline(lookup_layers).of(light);
     commands.bind(
         lookup, {gpu::Texture{receivers.depth.view(), &nearest_},
                  gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},

@@ -5,7 +5,8 @@
 #include "visibility/lookup_pipeline.h"
 #include "visibility/map_lookup.shared.h"
 
-#include <span>
+#include <cstdint>
+#include <map>
 #include <vector>
 
 namespace gnomon {
@@ -31,36 +32,44 @@ struct BiasOptions {
     bool receiver_plane = true;  ///< compare each texel with the receiver's plane there
 };
 
+/// In which layer a receiver is looked up: the last that begins before its distance from the
+/// camera, or the one along whose axis it is farthest from the light. In the order of
+/// kChooseByDistance, ...
+enum class LayerChoice { by_distance, by_axis };
+
 /// A layer of a map as receivers choose it.
 struct LookupLayer {
     LightFit fit;
-    double from_m = 0.0;  ///< receivers that are nearer to the camera look in the layer before
+    double from_m = 0.0;  ///< by distance: nearer receivers look in the layer before
+};
+
+struct LookupLayers {
+    LayerChoice choice = LayerChoice::by_distance;
+    std::vector<LookupLayer> layers;  ///< between one and kMaxMapLayers, in the order of distance
 };
 
 /// The number in the picture's depth buffer at a distance along the camera's axis.
 float depth_at(const Camera& camera, Extent size, double distance_m);
 /// Which layer a point is looked up in.
-std::size_t layer_of(std::span<const LookupLayer> layers, const Camera& camera, Vec3 p_ws);
+std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws);
 
-/// Compares receivers with a depth map. Between one and kMaxMapLayers layers, in the order of their
-/// distance from the camera; what lies outside of a spot's map is lit.
+/// Compares receivers with a depth map; what lies outside of a spot's map is lit.
 class MapLookup {
 public:
     MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias);
 
     void record(gpu::Commands& commands, const raster::Receivers& receivers, const Light& light,
-                std::span<const LookupLayer> layers, const gpu::Image& map, gpu::Image& visibility);
+                const LookupLayers& layers, const gpu::Image& map, gpu::Image& visibility);
 
     std::uint64_t memory_bytes() const { return frame_.memory_bytes(); }
 
 private:
-    LookupPipeline& pipeline(std::size_t layers, bool affine);
+    LookupPipeline& pipeline(const LookupLayers& layers);
 
     const gpu::Device& device_;
     MapFilter filter_;
     shared::MapBias bias_;
-    /// For each number of layers, of maps that are affine and that are not.
-    std::array<std::array<LookupPipeline, 2>, shared::kMaxMapLayers + 1> pipelines_;
+    std::map<std::vector<std::uint32_t>, LookupPipeline> pipelines_;  // by constants
     gpu::Sampler nearest_;
     gpu::Buffer frame_;
 };

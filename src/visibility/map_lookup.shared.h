@@ -9,13 +9,17 @@ namespace gnomon::shared {
 
 const uint kMaxMapLayers = 8u;
 
-// Specialization constants of map_lookup.comp.glsl, from 1: kFilter, kLayerCount, kAffine
+// Specialization constants of map_lookup.comp.glsl, from 1: kFilter, kLayerCount, kAffine,
+// kLayerChoice
 
 const uint kFilterNearest = 0u;
 const uint kFilterHardware2x2 = 1u;
 const uint kFilterBox3x3 = 2u;
 const uint kFilterBox4x4 = 3u;
 const uint kFilterDithered4 = 4u;
+
+const uint kChooseByDistance = 0u;
+const uint kChooseByAxis = 1u;
 
 /// By how much receivers are moved before they are looked up: map_bias.glsl.
 struct MapBias {

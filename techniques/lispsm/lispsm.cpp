@@ -24,14 +24,14 @@ public:
         : MapTechnique(context, lispsm_info(), options), options_(options) {}
 
 private:
-    std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const override {
+    MapPlan plan(const Frame& frame, const Seen& seen) const override {
         const Box3 bounds = frame.scene.bounds();
         const auto& light = std::get<DirectionalLight>(frame.light);
         const LightFit fit =
             fit_warped(Warp::lispsm, kDefaultFocus, light, frame.camera,
                        visible_corners(frame.camera, frame.size, seen.bounds, seen.range), bounds,
                        options_.size_texels(), options_.margin_texels());
-        return {directional_layer(frame, seen, fit, seen.range)};
+        return {.layers = {directional_layer(frame, seen, fit, seen.range)}};
     }
 
     Options options_;

@@ -46,8 +46,8 @@ public:
         : MapTechnique(context, pssm_info(), options), options_(options) {}
 
 private:
-    std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const override {
-        std::vector<PlannedLayer> layers;
+    MapPlan plan(const Frame& frame, const Seen& seen) const override {
+        MapPlan plan;
         if (seen.range.far_m > seen.range.near_m) {
             const std::vector<double> distances_m = pssm::split_distances(
                 seen.range.near_m, seen.range.far_m, options_.splits, options_.split_lambda);
@@ -56,11 +56,11 @@ private:
                 const std::vector<DVec3> receivers_ws =
                     visible_corners(frame.camera, frame.size, seen.bounds, range);
                 if (!receivers_ws.empty())
-                    layers.push_back(split(frame, seen, range, receivers_ws));
+                    plan.layers.push_back(split(frame, seen, range, receivers_ws));
             }
         }
-        if (layers.empty()) layers.push_back(split(frame, seen, {}, {}));  // nothing is seen
-        return layers;
+        if (plan.layers.empty()) plan.layers.push_back(split(frame, seen, {}, {}));  // none is seen
+        return plan;
     }
 
     PlannedLayer split(const Frame& frame, const Seen& seen, DepthRange range,

@@ -25,18 +25,15 @@ public:
         : MapTechnique(context, shadow_map_info(), options), options_(options) {}
 
 private:
-    std::vector<PlannedLayer> plan(const Frame& frame, const Seen& seen) const override {
-        const Box3 bounds = frame.scene.bounds();
+    MapPlan plan(const Frame& frame, const Seen& seen) const override {
         if (const auto* spot = std::get_if<SpotLight>(&frame.light)) {
-            const LightFit fit =
-                fit_spot(*spot, bounds, options_.size_texels(), options_.margin_texels());
-            return {{{fit}, CasterVolume(fit)}};
+            return {.layers = {local_layer(frame, seen, spot_view(*spot), true)}};
         }
         const auto& light = std::get<DirectionalLight>(frame.light);
         const LightFit fit = fit_directional(
-            light, visible_corners(frame.camera, frame.size, seen.bounds, seen.range), bounds,
-            options_.size_texels(), options_.margin_texels());
-        return {directional_layer(frame, seen, fit, seen.range)};
+            light, visible_corners(frame.camera, frame.size, seen.bounds, seen.range),
+            frame.scene.bounds(), options_.size_texels(), options_.margin_texels());
+        return {.layers = {directional_layer(frame, seen, fit, seen.range)}};
     }
 
     Options options_;
