@@ -24,7 +24,8 @@ class Documentation(unittest.TestCase):
         for name in techniques():
             with self.subTest(technique=name):
                 code = text(ROOT / "techniques" / name / f"{name}.cpp")
-                sources = re.search(r'\.source = "([^"]*)"', code).group(1)
+                literals = re.search(r'\.source =\s*((?:"[^"]*"\s*)+)', code).group(1)
+                sources = "".join(re.findall(r'"([^"]*)"', literals))
                 self.assertTrue(sources, "names no source")
                 self.assertLessEqual(set(re.split(r",\s*", sources)), keys)
 

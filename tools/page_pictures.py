@@ -2,7 +2,9 @@
 """Makes docs/images, the pictures of the README and of the techniques' pages, by running the program: crops,
 side by side. Run it again, and look at the pictures, when a technique's pictures change. Needs Pillow.
 
-    tools/page_pictures.py [GNOMON]       the built program; else $GNOMON_CLI, else build/release/apps/cli/gnomon
+    tools/page_pictures.py [GNOMON [PICTURE...]]
+
+GNOMON: the built program; else $GNOMON_CLI, else build/release/apps/cli/gnomon. PICTURE: else all.
 """
 
 import os
@@ -23,6 +25,8 @@ RECT = "--light rect:center=1.5,3,1,u=0.5,0,0,v=0,0,0.5"
 MAP = "--technique shadow_map"
 NO_BIAS = ("--shadow_map.receiver_plane false --shadow_map.bias_constant 0 --shadow_map.bias_slope 0 "
            "--shadow_map.normal_offset 0 --shadow_map.caster_error 0")
+FINE = "--shadow_map.map_size 4096"
+LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
 
 # Picture: size to render, crop (left, top, right, bottom) in px, panels in a row, and what each panel shows.
@@ -37,6 +41,14 @@ PICTURES = {
     "shadow_map-far": ("1280x720", (440, 300, 760, 460), 2, ["field-small", f"field-small {MAP}"]),
     "shadow_map-plane": ("1280x720", (0, 160, 520, 360), 3, [
         STEEP, f"{STEEP} {MAP} --shadow_map.receiver_plane false", f"{STEEP} {MAP}"]),
+    "shadow_map-pcss": ("1280x720", (460, 350, 760, 500), 3, [
+        "courtyard", f"courtyard {MAP} {FINE} --shadow_map.filter box_3x3",
+        f"courtyard {MAP} {FINE} --shadow_map.filter pcss --shadow_map.filter_taps 32"]),
+    "shadow_map-contents": ("1280x720", (820, 340, 1120, 490), 2, [
+        LOW] + [f"{LOW} {MAP} --shadow_map.light_bleeding 0 --shadow_map.blur 6 --shadow_map.content {content}"
+                for content in ("variance", "exponential_variance", "moments")]),
+    "omni": ("1280x720", (640, 420, 960, 600), 3, [
+        "torches", "torches --technique omni", "torches --technique omni --omni.projection tetrahedral"]),
     "pssm": ("1280x720", (440, 300, 760, 460), 3, [
         "field-small", f"field-small {MAP}", "field-small --technique pssm"]),
     "pssm-splits": ("1280x720", (480, 280, 960, 440), 2, [
@@ -86,12 +98,17 @@ def main():
     (ROOT / "docs" / "images").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         frame = f"{folder}/frame.png"
+        wanted = sys.argv[2:] or [*PICTURES, "compare"]
         for name, (size, crop, columns, commands) in PICTURES.items():
+            if name not in wanted:
+                continue
             panels = []
             for command in commands:
                 gnomon("render", *command.split(), "-o", frame, "--size", size)
                 panels.append(cropped(frame, crop))
             save(name, panels, columns)
+        if "compare" not in wanted:
+            return
         gnomon("compare", "courtyard", "-o", f"{folder}/report", "--size", REPORT_SIZE,
                "--techniques", "shadow_map,shadow_volumes", "--frames", "1")
         save("compare", [cropped(f"{folder}/report/images/sun/{panel}.png", REPORT_CROP)

@@ -45,6 +45,7 @@ void Device::create(const Candidate& candidate) {
                                        .pNext = &v12};
     features.features.depthClamp = VK_TRUE;
     features.features.geometryShader = VK_TRUE;
+    features.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
     const std::array extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     const VkDeviceCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,

@@ -99,6 +99,9 @@ std::string missing_feature(VkPhysicalDevice device, std::uint32_t api) {
     if (features.features.geometryShader == VK_FALSE) {
         return "feature geometryShader (for primitive ids in fragment shaders)";
     }
+    if (features.features.shaderStorageImageWriteWithoutFormat == VK_FALSE) {
+        return "feature shaderStorageImageWriteWithoutFormat";
+    }
     if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
         return "extension VK_KHR_push_descriptor";
     }

@@ -1,5 +1,7 @@
 #include "technique/map_technique.h"
 
+#include "base/check.h"
+
 namespace gnomon {
 
 namespace {
@@ -17,7 +19,17 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
     : GpuTechnique(context, info),
       options_(options),
       map_(context.impl().device()),
-      lookup_(context.impl().device(), options.filter, bias(options)) {}
+      lookup_(context.impl().device(), options, bias(options)) {
+    if (options.filter == MapFilter::pcss && options.content != MapContent::depth &&
+        !is_blurred(options.content)) {
+        fail_input("{}: filter pcss reads depths; set content to depth, or choose another filter",
+                   info.name);
+    }
+    if (options.content == MapContent::depth) return;
+    contents_ = std::make_unique<ContentMap>(context.impl().device(), options.content,
+                                             static_cast<float>(options.exponent),
+                                             static_cast<float>(options.blur));
+}
 
 PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& seen,
                                              const LightFit& fit, DepthRange range) {
@@ -44,6 +56,8 @@ PlannedLayer MapTechnique::local_layer(const Frame& frame, const Seen& seen, con
 void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                           gpu::Image& visibility) {
     std::vector<MapLayer> drawn;
+    std::vector<LightFit> fits;
+    bool is_drawn = false;
     const Seen seen = seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
     const MapPlan planned = plan(input.frame, seen);
     layers_ = {.choice = planned.choice};
@@ -52,13 +66,20 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                          static_cast<float>(options_.caster_error),
                          layer.needed || !options_.cull_casters});
         layers_.layers.push_back(layer.lookup);
+        fits.push_back(layer.lookup.fit);
     }
     {
         const gpu::Pass pass(commands, "depth");
-        map_.record(commands, input.scene, drawn, input.frame.ignore_alpha, options_.reuse_maps);
+        is_drawn = map_.record(commands, input.scene, drawn, input.frame.ignore_alpha,
+                               options_.reuse_maps);
+    }
+    if (contents_ && is_drawn) {
+        const gpu::Pass pass(commands, "content");
+        contents_->record(commands, map_.image(), fits);
     }
     const gpu::Pass pass(commands, "lookup");
-    lookup_.record(commands, input.receivers, input.frame.light, layers_, map_.image(), visibility);
+    lookup_.record(commands, input.receivers, input.frame.light, layers_,
+                   contents_ ? contents_->image() : map_.image(), visibility);
 }
 
 void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {
@@ -66,7 +87,7 @@ void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {
         [layers = layers_, camera = frame.camera](Vec3 p_ws) {
             return layers.layers[layer_of(layers, camera, p_ws)].fit.texel_size_m(p_ws);
         },
-        filter_radius_texels(options_.filter), frame);
+        least_radius_texels(options_), frame);
 }
 
 }  // namespace gnomon

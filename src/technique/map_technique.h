@@ -2,19 +2,20 @@
 
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
+#include "visibility/depth_map.h"
 #include "visibility/light_view.h"
 #include "visibility/map_lookup.h"
 #include "visibility/seen.h"
 
 #include <concepts>
+#include <memory>
 #include <vector>
 
 namespace gnomon {
 
 /// What all techniques with depth maps leave open to their users.
-struct MapOptions : BiasOptions {
+struct MapOptions : BiasOptions, ReadingOptions {
     int map_size = 2048;
-    MapFilter filter = MapFilter::box_4x4;
     bool cull_casters = true;
     double caster_error = 0.25;
     bool reuse_maps = false;
@@ -22,8 +23,8 @@ struct MapOptions : BiasOptions {
     /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
     /// across the map, and a half for rounding.
     float margin_texels() const {
-        return filter_radius_texels(filter) +
-               static_cast<float>(normal_offset) * biased_reach_texels(filter, receiver_plane) +
+        return filter_radius_texels(*this) +
+               static_cast<float>(normal_offset) * biased_reach_texels(*this, receiver_plane) +
                0.5f;
     }
     unsigned size_texels() const { return static_cast<unsigned>(map_size); }
@@ -34,9 +35,29 @@ template <std::derived_from<MapOptions> Options>
 std::vector<typename ParamTable<Options>::Row> map_rows() {
     return {
         integer<Options>("map_size", &Options::map_size, 16, 16384, "texels", "side of a map"),
+        choice<Options, MapContent>(
+            "content", &Options::content,
+            {"depth", "distance", "packed", "packed_two", "exponential", "variance",
+             "exponential_variance", "moments"},
+            "what a texel holds: what the light saw, as a depth or as a distance in a float, four "
+            "bytes or two; or what is blurred, and bounds how much of it hides a receiver"),
         choice<Options, MapFilter>("filter", &Options::filter,
-                                   {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4"},
-                                   "how a map is read"),
+                                   {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4",
+                                    "disc", "footprint", "pcss"},
+                                   "how texels are compared, where they are not blurred"),
+        integer<Options>("filter_taps", &Options::filter_taps, 1, 64, "1",
+                         "of disc, footprint and pcss, which searches with as many again"),
+        number<Options>("filter_radius", &Options::filter_radius, 0.0, 64.0, "texels", "of disc"),
+        number<Options>("filter_most", &Options::filter_most, 1.0, 256.0, "texels",
+                        "footprint and pcss reach no farther than this"),
+        number<Options>("blur", &Options::blur, 0.0, 32.0, "texels",
+                        "radius of the blur, of contents that are blurred"),
+        number<Options>("exponent", &Options::exponent, 1.0, 42.0, "1",
+                        "of exponential contents: the greater, the nearer to its caster a shadow "
+                        "can be told from light"),
+        number<Options>("light_bleeding", &Options::light_bleeding, 0.0, 0.9, "1",
+                        "of contents that are blurred: shadows that are lighter than this are "
+                        "light, which darkens what shines through them"),
         number<Options>("bias_constant", &Options::bias_constant, 0.0, 100.0, "texels",
                         "receivers are moved towards the light by this"),
         number<Options>("bias_slope", &Options::bias_slope, 0.0, 16.0, "1",
@@ -92,11 +113,13 @@ private:
     void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) final;
     void describe_texels(const Frame& frame, Visibility::Impl& out) final;
     std::uint64_t memory_bytes() const final {
-        return map_.memory_bytes() + lookup_.memory_bytes();
+        return map_.memory_bytes() + (contents_ ? contents_->memory_bytes() : 0) +
+               lookup_.memory_bytes();
     }
 
     MapOptions options_;
     DepthMap map_;
+    std::unique_ptr<ContentMap> contents_;  // where they are not the depths
     MapLookup lookup_;
     LookupLayers layers_;  // of the last frame
 };

@@ -79,7 +79,7 @@ DepthMap::DepthMap(const gpu::Device& device)
       pipelines_{{{caster_pipeline(device, false, false), caster_pipeline(device, true, false)},
                   {caster_pipeline(device, false, true), caster_pipeline(device, true, true)}}} {}
 
-void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
+bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                       std::span<const MapLayer> layers, bool ignore_alpha, bool reuse) {
     const bool is_new =
         make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()));
@@ -92,7 +92,7 @@ void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                                               : std::vector<CasterDraw>());
     }
     contents.clip_from_local = clip_from_local_;
-    if (reuse && !is_new && holds(scene) && contents == drawn_) return;
+    if (reuse && !is_new && holds(scene) && contents == drawn_) return false;
     drawn_ = std::move(contents);
     drawn_scene_ = scene.scene().identity();
 
@@ -106,6 +106,7 @@ void DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
         commands.end_drawing();
     }
     commands.use(image_, gpu::Use::sampled);
+    return true;
 }
 
 bool DepthMap::holds(const raster::GpuScene& scene) const {

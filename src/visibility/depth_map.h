@@ -28,8 +28,8 @@ public:
 
     /// Draws the casters of each layer, both sides, alpha masks honoured unless `ignore_alpha`. The
     /// layers have one size. The map is ready to be sampled afterwards, as an array. With `reuse`
-    /// nothing is drawn when that would draw what is there.
-    void record(gpu::Commands& commands, const raster::GpuScene& scene,
+    /// nothing is drawn, and false returned, when that would draw what is there.
+    bool record(gpu::Commands& commands, const raster::GpuScene& scene,
                 std::span<const MapLayer> layers, bool ignore_alpha, bool reuse = false);
 
     const gpu::Image& image() const { return image_; }

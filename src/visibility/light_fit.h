@@ -45,6 +45,7 @@ struct LightFit {
     /// Casters nearer than the near plane are clamped to it, as a light at infinity wants; else
     /// they are not seen.
     bool clamps_near = true;
+    double far_m = 0.0;  ///< of a light within the world: to the farthest of the scene; else 0
 
     /// Side of a texel at a point of the world, in metres, across the light; the longer one where
     /// the map stretches it. 0 behind a light.

@@ -33,6 +33,13 @@ DVec3 up_for(DVec3 direction) {
     return std::abs(direction.y) > 0.99 ? DVec3(0, 0, -1) : DVec3(0, 1, 0);
 }
 
+double farthest_m(const Box3& bounds, const DVec3& p_ws) {
+    if (bounds.empty()) return 1.0;
+    const DVec3 away =
+        glm::max(glm::abs(DVec3(bounds.min) - p_ws), glm::abs(DVec3(bounds.max) - p_ws));
+    return std::max(glm::length(away), 1e-6);
+}
+
 }  // namespace
 
 std::array<DVec4, 4> LightView::planes() const {
@@ -135,6 +142,7 @@ LightFit fit_view(const LightView& view, const Box3& bounds, unsigned size_texel
     fit.clip_from_world = Mat4(glm::transpose(rows));
     fit.size_texels = size_texels;
     fit.affine = false;
+    fit.far_m = farthest_m(bounds, view.position_ws);
     fit.clamps_near =
         false;  // what all but touches the light, as a ceiling around it, hides nothing
     return fit;

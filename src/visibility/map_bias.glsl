@@ -19,15 +19,18 @@ struct TexelAt {
     float side_m;    // across the light, the longer one
     float offset_m;  // along the normal, that gains the depth that the plane gains over one texel
     vec2 gradient;   // the map's depth that the plane gains from a texel to the next
+    vec3 u, v;       // texels of the map that a metre of the world is long
+    vec3 z;          // and the map's depth
 };
 
 // Of a map whose texels are all alike: going a step u across the light, a plane of normal n falls behind
 // by n.u / cos a along the light, a the angle between light and normal, and moving by d along the normal
 // gains d / cos a.
-TexelAt affine_texel(MapLayerFrame layer, vec3 normal_ws, vec3 to_light) {
+TexelAt affine_texel(MapLayerFrame layer, float size_texels, vec3 normal_ws, vec3 to_light) {
     vec2 m = layer.steps.xy * vec2(dot(normal_ws, layer.u.xyz), dot(normal_ws, layer.v.xyz));
     float cosine = max(dot(normal_ws, to_light), 1.0 / kMaxGradientSlope);
-    return TexelAt(layer.steps.z, length(m), -dot(layer.z.xyz, to_light) / cosine * m);
+    return TexelAt(layer.steps.z, length(m), -dot(layer.z.xyz, to_light) / cosine * m,
+                   size_texels * layer.u.xyz, size_texels * layer.v.xyz, layer.z.xyz);
 }
 
 // Of any map, by the gradients of its texel coordinates u, v and its depth z at a point of the world:
@@ -51,7 +54,7 @@ TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_ws, vec3
     float least = length(along_light) / abs(dot(along_light, z)) / kMaxGradientSlope;
     vec2 gradient = -m / (sign(along) * max(abs(along), least));
     return TexelAt(near ? sqrt((mean + difference) / dot(along_light, along_light)) : 0.0,
-                   near ? length(m) : 0.0, near ? gradient : vec2(0.0));
+                   near ? length(m) : 0.0, near ? gradient : vec2(0.0), u, v, z);
 }
 
 // `to_light` is a unit vector.

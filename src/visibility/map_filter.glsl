@@ -1,11 +1,13 @@
 // How much of a depth map's filter is lit. Each texel is compared with the receiver's own plane at that
 // texel's centre, where the plane's stored depth is just that, so that a plane needs no bias however wide
 // the filter. G. King, "Shadow Mapping Algorithms", NVIDIA 2004; J. Isidoro, "Shadow Mapping: GPU-based Tips
-// and Techniques", GDC 2006, for receiver planes; here at texel centres, from the exact normal.
+// and Techniques", GDC 2006, for receiver planes; here at texel centres, from the exact normal. Includers
+// declare kContent and kTaps.
 
 #ifndef GNOMON_VISIBILITY_MAP_FILTER_GLSL
 #define GNOMON_VISIBILITY_MAP_FILTER_GLSL
 
+#include "visibility/map_content.glsl"
 #include "visibility/map_lookup.shared.h"
 
 // A plane's depths are kept between what is no caster and what is clamped to the near plane: neither hides
@@ -14,44 +16,81 @@ const float kNearest = 1.0 - 1.0 / 1048576.0;
 
 // What is looked up, in texels of a layer.
 struct MapPoint {
-    vec2 texel;     // texel i reaches from i to i + 1
-    float depth;    // reversed; a texel that is nearer to the light hides it
-    vec2 gradient;  // of the receiver's plane, depth per texel
+    vec2 texel;      // texel i reaches from i to i + 1
+    float depth;     // reversed; a texel that is nearer to the light hides it
+    vec2 gradient;   // of the receiver's plane, depth per texel
+    float cone;      // depth that texels may be nearer to the light, for each texel that they are away
     float layer;
+    MapSpace space;  // of its layer
 };
+
+// The receiver's own plane at texels' centres.
+vec4 plane_depths(MapPoint point, vec4 dx, vec4 dy) {
+    vec4 away = sqrt(dx * dx + dy * dy);
+    vec4 planes = point.depth + point.gradient.x * dx + point.gradient.y * dy + point.cone * away;
+    return clamp(planes, 0.0, kNearest);
+}
+
+float stored_distance(sampler2DArray map, float size, vec2 texel, float layer) {
+    vec4 bytes = texelFetch(map, ivec3(vec3(clamp(texel, vec2(0.0), vec2(size - 1.0)), layer)), 0);
+    return kContent == kContentPackedTwo ? unpacked_from_two(bytes)
+                                         : (kContent == kContentPacked ? unpacked_from_four(bytes)
+                                                                       : bytes.x);
+}
+
+// The distance that a depth would have been stored as, made less by what the bias allows.
+float compared_distance(MapPoint point, MapBias bias, float size, vec2 texel, float depth) {
+    float distance = distance_of(point.space, (texel + 0.5) / size, depth);
+    return distance * bias.distance_scale - bias.distance_offset - quantum(kContent);
+}
 
 // Which texels of the square with the corner (i, j) are lit: (i, j+1), (i+1, j+1), (i+1, j), (i, j), the
 // order of a gather.
-vec4 lit_quad(sampler2DArray map, float size, MapPoint point, vec2 corner) {
-    vec4 depths = textureGather(map, vec3((corner + 1.0) / size, point.layer));
-    float first = point.depth + dot(point.gradient, corner + 0.5 - point.texel);
-    vec4 planes = first + vec4(point.gradient.y, point.gradient.x + point.gradient.y,
-                               point.gradient.x, 0.0);
-    return vec4(greaterThanEqual(clamp(planes, 0.0, kNearest), depths));
+vec4 lit_quad(sampler2DArray map, float size, MapBias bias, MapPoint point, vec2 corner) {
+    vec2 d = corner + 0.5 - point.texel;
+    vec4 planes = plane_depths(point, d.x + vec4(0.0, 1.0, 1.0, 0.0), d.y + vec4(1.0, 1.0, 0.0, 0.0));
+    if (kContent == kContentDepth) {
+        return vec4(greaterThanEqual(planes, textureGather(map, vec3((corner + 1.0) / size, point.layer))));
+    }
+    vec2 at[4] = {corner + vec2(0.0, 1.0), corner + vec2(1.0, 1.0), corner + vec2(1.0, 0.0), corner};
+    vec4 lit;
+    for (int i = 0; i < 4; ++i) {
+        lit[i] = compared_distance(point, bias, size, at[i], planes[i]) <=
+                         stored_distance(map, size, at[i], point.layer)
+                     ? 1.0
+                     : 0.0;
+    }
+    return lit;
 }
 
-float lit_nearest(sampler2DArray map, float size, MapPoint point) {
+float lit_nearest(sampler2DArray map, float size, MapBias bias, MapPoint point) {
     vec2 texel = clamp(floor(point.texel), 0.0, size - 1.0);
-    float depth = texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x;
-    float plane = point.depth + dot(point.gradient, texel + 0.5 - point.texel);
-    return clamp(plane, 0.0, kNearest) >= depth ? 1.0 : 0.0;
+    vec2 d = texel + 0.5 - point.texel;
+    float plane = plane_depths(point, vec4(d.x), vec4(d.y)).x;
+    if (kContent == kContentDepth) {
+        return plane >= texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x ? 1.0 : 0.0;
+    }
+    return compared_distance(point, bias, size, texel, plane) <=
+                   stored_distance(map, size, texel, point.layer)
+               ? 1.0
+               : 0.0;
 }
 
-float lit_bilinear(sampler2DArray map, float size, MapPoint point, vec2 at) {
+float lit_bilinear(sampler2DArray map, float size, MapBias bias, MapPoint point, vec2 at) {
     vec2 corner = floor(at - 0.5);
     vec2 f = at - 0.5 - corner;
-    vec4 lit = lit_quad(map, size, point, corner);
+    vec4 lit = lit_quad(map, size, bias, point, corner);
     return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
 }
 
 // Four bilinear comparisons side by side, which are the 3x3 nearest ones with weights 1-f, 1, f.
-float lit_box_3x3(sampler2DArray map, float size, MapPoint point) {
+float lit_box_3x3(sampler2DArray map, float size, MapBias bias, MapPoint point) {
     vec2 corner = floor(point.texel) - 1.0;
     vec2 f = point.texel - corner - 1.0;
-    vec4 a = lit_quad(map, size, point, corner);
-    vec4 b = lit_quad(map, size, point, corner + vec2(2.0, 0.0));
-    vec4 c = lit_quad(map, size, point, corner + vec2(0.0, 2.0));
-    vec4 d = lit_quad(map, size, point, corner + 2.0);
+    vec4 a = lit_quad(map, size, bias, point, corner);
+    vec4 b = lit_quad(map, size, bias, point, corner + vec2(2.0, 0.0));
+    vec4 c = lit_quad(map, size, bias, point, corner + vec2(0.0, 2.0));
+    vec4 d = lit_quad(map, size, bias, point, corner + 2.0);
     vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
     float row0 = dot(wx, vec3(a.w, a.z, b.w));
     float row1 = dot(wx, vec3(a.x, a.y, b.x));
@@ -61,13 +100,13 @@ float lit_box_3x3(sampler2DArray map, float size, MapPoint point) {
 
 // Nine bilinear comparisons side by side, which are the 4x4 nearest ones with weights 1-f, 1, 1, f, without a
 // step where the receiver moves to the next texel.
-float lit_box_4x4(sampler2DArray map, float size, MapPoint point) {
+float lit_box_4x4(sampler2DArray map, float size, MapBias bias, MapPoint point) {
     vec2 corner = floor(point.texel - 0.5) - 1.0;
     vec2 f = point.texel - corner - 1.5;
-    vec4 a = lit_quad(map, size, point, corner);
-    vec4 b = lit_quad(map, size, point, corner + vec2(2.0, 0.0));
-    vec4 c = lit_quad(map, size, point, corner + vec2(0.0, 2.0));
-    vec4 d = lit_quad(map, size, point, corner + 2.0);
+    vec4 a = lit_quad(map, size, bias, point, corner);
+    vec4 b = lit_quad(map, size, bias, point, corner + vec2(2.0, 0.0));
+    vec4 c = lit_quad(map, size, bias, point, corner + vec2(0.0, 2.0));
+    vec4 d = lit_quad(map, size, bias, point, corner + 2.0);
     vec4 wx = vec4(1.0 - f.x, 1.0, 1.0, f.x);
     float row0 = dot(wx, vec4(a.w, a.z, b.w, b.z));
     float row1 = dot(wx, vec4(a.x, a.y, b.x, b.y));
@@ -78,15 +117,70 @@ float lit_box_4x4(sampler2DArray map, float size, MapPoint point) {
 
 // Four of the sixteen taps, the others by turns in squares of four pixels, so that the eye averages them.
 // M. Bunnell, F. Pellacini, "Shadow Map Antialiasing", GPU Gems 2004, chapter 11.
-float lit_dithered_4(sampler2DArray map, float size, MapPoint point, uvec2 pixel) {
+float lit_dithered_4(sampler2DArray map, float size, MapBias bias, MapPoint point, uvec2 pixel) {
     uvec2 turn = pixel & 1u;
     turn.y ^= turn.x;
     vec2 first = point.texel + vec2(turn) - 1.5;
-    float lit = lit_bilinear(map, size, point, first);
-    lit += lit_bilinear(map, size, point, first + vec2(2.0, 0.0));
-    lit += lit_bilinear(map, size, point, first + vec2(0.0, 2.0));
-    lit += lit_bilinear(map, size, point, first + 2.0);
+    float lit = lit_bilinear(map, size, bias, point, first);
+    lit += lit_bilinear(map, size, bias, point, first + vec2(2.0, 0.0));
+    lit += lit_bilinear(map, size, bias, point, first + vec2(0.0, 2.0));
+    lit += lit_bilinear(map, size, bias, point, first + 2.0);
     return 0.25 * lit;
+}
+
+// Of a pixel, in [0, 1): neighbours differ as much as they can. J. Jimenez, "Next Generation Post Processing in
+// Call of Duty: Advanced Warfare", SIGGRAPH 2014 courses.
+float gradient_noise(uvec2 pixel) {
+    return fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+}
+
+// Evenly over the unit disc, turned by a part of a whole turn: H. Vogel, "A Better Way to Construct the
+// Sunflower Head", Mathematical Biosciences 44, 1979.
+vec2 disc_sample(uint i, float turn) {
+    const float kGoldenAngle = 2.39996323;
+    const float kWholeTurn = 6.28318531;
+    float angle = kGoldenAngle * float(i) + kWholeTurn * turn;
+    return sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(angle), sin(angle));
+}
+
+// Evenly over the square from -0.5 to 0.5, moved by a part of its side: the additive recurrence of the plastic
+// number.
+vec2 square_sample(uint i, float shift) {
+    return fract(float(i) * vec2(0.75487767, 0.56984029) + vec2(shift, fract(7.0 * shift))) - 0.5;
+}
+
+// Bilinear taps over a disc that `spread` makes an ellipse of, in texels.
+float lit_disc(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread, float turn) {
+    float lit = 0.0;
+    for (uint i = 0u; i < kTaps; ++i)
+        lit += lit_bilinear(map, size, bias, point, point.texel + spread * disc_sample(i, turn));
+    return lit / float(kTaps);
+}
+
+// Bilinear taps over a parallelogram of the sides `spread`, in texels: W. Reeves, D. Salesin, R. Cook,
+// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987.
+float lit_footprint(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread, float shift) {
+    float lit = 0.0;
+    for (uint i = 0u; i < kTaps; ++i)
+        lit += lit_bilinear(map, size, bias, point, point.texel + spread * square_sample(i, shift));
+    return lit / float(kTaps);
+}
+
+// The mean depth of what hides the receiver within an ellipse of the map; 0 where nothing does. R. Fernando,
+// "Percentage-Closer Soft Shadows", SIGGRAPH 2005 sketches.
+float blocker_depth(sampler2DArray map, float size, MapPoint point, mat2 spread, float turn) {
+    float sum = 0.0;
+    float blockers = 0.0;
+    for (uint i = 0u; i < kTaps; ++i) {
+        vec2 at = point.texel + spread * disc_sample(i, turn);
+        vec2 texel = clamp(floor(at), 0.0, size - 1.0);
+        vec2 d = texel + 0.5 - point.texel;
+        float depth = texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x;
+        float hides = depth > plane_depths(point, vec4(d.x), vec4(d.y)).x ? 1.0 : 0.0;
+        sum += hides * depth;
+        blockers += hides;
+    }
+    return sum / max(blockers, 1.0);
 }
 
 #endif

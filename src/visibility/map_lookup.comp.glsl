@@ -2,18 +2,22 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// Receivers against a depth map of any projection and up to eight layers.
+// Receivers against a map of any projection and content and up to eight layers.
 
-#include "visibility/map_bias.glsl"
-#include "visibility/map_filter.glsl"
 #include "visibility/map_lookup.shared.h"
-#include "visibility/receiver.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 1) const uint kFilter = kFilterBox4x4;
-layout(constant_id = 2) const uint kLayerCount = 1u;
-layout(constant_id = 3) const uint kAffine = 1u;  // all texels of a layer are of one size
-layout(constant_id = 4) const uint kLayerChoice = kChooseByDistance;
+layout(constant_id = 2) const uint kContent = kContentDepth;
+layout(constant_id = 3) const uint kTaps = 16u;  // of filters that have no number of their own
+layout(constant_id = 4) const uint kLayerCount = 1u;
+layout(constant_id = 5) const uint kAffine = 1u;  // all texels of a layer are of one size
+layout(constant_id = 6) const uint kLayerChoice = kChooseByDistance;
+
+#include "visibility/map_bias.glsl"
+#include "visibility/map_filter.glsl"
+#include "visibility/map_moments.glsl"
+#include "visibility/receiver.glsl"
 
 layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
@@ -47,34 +51,109 @@ Layer layer_of(float depth, vec3 p_ws) {
         layer.map.z = mix(layer.map.z, next.z, bvec4(chosen));
         layer.map.w = mix(layer.map.w, next.w, bvec4(chosen));
         layer.map.steps = mix(layer.map.steps, next.steps, bvec3(chosen));
+        layer.map.space.tangents = mix(layer.map.space.tangents, next.space.tangents, bvec4(chosen));
+        layer.map.space.reach = chosen ? next.space.reach : layer.map.space.reach;
         layer.index = chosen ? float(i) : layer.index;
     }
     return layer;
 }
 
-float filtered(MapPoint point, uvec2 pixel) {
+// Of contents that are blurred, what is left of light.
+float lit_by_blurred(MapPoint point) {
+    vec2 at = clamp(point.texel, vec2(0.5), vec2(frame.size_texels - 0.5));
+    vec2 corner = floor(at - 0.5);
+    vec2 f = at - 0.5 - corner;
+    ivec2 i = ivec2(corner);
+    ivec2 j = min(i + 1, int(frame.size_texels) - 1);
+    int layer = int(point.layer);
+    vec4 content = mix(mix(texelFetch(map, ivec3(i, layer), 0), texelFetch(map, ivec3(j.x, i.y, layer), 0), f.x),
+                       mix(texelFetch(map, ivec3(i.x, j.y, layer), 0), texelFetch(map, ivec3(j, layer), 0), f.x),
+                       f.y);
+    float along = distance_along(point.space, clamp(point.depth, 0.0, kNearest));
+    MapReadingFrame reading = frame.reading;
+    float lit = 1.0;
+    switch (kContent) {
+        case kContentExponential:
+            return min(content.x / warped(along, reading.exponent), 1.0);
+        case kContentVariance:
+            lit = most_behind(content.xy, along, reading.least_variance);
+            break;
+        case kContentExponentialVariance:
+            lit = lit_by_warped_variance(content, along, reading.exponent, reading.least_variance);
+            break;
+        case kContentMoments:
+            lit = lit_by_moments(content, along);
+            break;
+    }
+    return clamp((lit - reading.bleeding) / (1.0 - reading.bleeding), 0.0, 1.0);
+}
+
+// Texels of the map that the light, seen from the receiver, covers for each metre across it.
+mat2 texels_across_light(TexelAt texel, vec3 to_light) {
+    vec3 across = normalize(cross(to_light, abs(to_light.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+    vec3 other = cross(to_light, across);
+    return mat2(dot(texel.u, across), dot(texel.v, across), dot(texel.u, other), dot(texel.v, other));
+}
+
+// The light's own penumbra: as wide as the light looks from what hides it, in metres across the light.
+float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn) {
+    float most_m = frame.reading.most_texels * texel.side_m;
+    float least_m = texel.side_m;
+    float depth_per_m = max(dot(texel.z, to_light), 1e-20);
+    bool at_infinity = kLightKind == kLightDirectional;
+    float search_m = at_infinity ? push.light.radius * (1.0 - point.depth) / depth_per_m : most_m;
+    mat2 texels = texels_across_light(texel, to_light);
+    float blocker = blocker_depth(map, frame.size_texels, point, clamp(search_m, least_m, most_m) * texels, turn);
+    float behind = at_infinity ? (blocker - point.depth) / depth_per_m : blocker / max(point.depth, 1e-20) - 1.0;
+    float penumbra_m = clamp(push.light.radius * behind, least_m, most_m);
+    float lit = lit_disc(map, frame.size_texels, frame.bias, point, penumbra_m * texels, turn);
+    return blocker > 0.0 ? lit : 1.0;
+}
+
+float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uvec2 pixel) {
+    if (kContent >= kContentExponential) return lit_by_blurred(point);
     float size = frame.size_texels;
     switch (kFilter) {
         case kFilterNearest:
-            return lit_nearest(map, size, point);
+            return lit_nearest(map, size, frame.bias, point);
         case kFilterHardware2x2:
-            return lit_bilinear(map, size, point, point.texel);
+            return lit_bilinear(map, size, frame.bias, point, point.texel);
         case kFilterBox3x3:
-            return lit_box_3x3(map, size, point);
+            return lit_box_3x3(map, size, frame.bias, point);
         case kFilterDithered4:
-            return lit_dithered_4(map, size, point, pixel);
+            return lit_dithered_4(map, size, frame.bias, point, pixel);
+        case kFilterDisc:
+            return lit_disc(map, size, frame.bias, point, mat2(frame.reading.radius_texels),
+                            gradient_noise(pixel));
+        case kFilterFootprint:
+            return lit_footprint(map, size, frame.bias, point, footprint, gradient_noise(pixel));
+        case kFilterPcss:
+            return lit_pcss(point, texel, to_light, gradient_noise(pixel));
     }
-    return lit_box_4x4(map, size, point);
+    return lit_box_4x4(map, size, frame.bias, point);
 }
 
-float lit_by_map(vec3 p_ws, TexelAt texel, Layer layer, uvec2 pixel) {
+// From a pixel to the next on the receiver's plane, in texels.
+vec2 step_on_plane(TexelAt texel, vec3 p_ws, vec3 normal_ws, uvec2 next, float depth) {
+    // Two points of the next pixel's ray.
+    vec3 far = receiver_position(push.world_from_clip, next, push.size, depth);
+    vec3 near = receiver_position(push.world_from_clip, next, push.size, 1.5 * depth);
+    vec3 along = far - near;
+    float slope = dot(normal_ws, along);
+    float least = 1e-3 * length(along);
+    vec3 hit = far + along * dot(normal_ws, p_ws - far) / (slope < 0.0 ? min(slope, -least) : max(slope, least));
+    vec2 texels = vec2(dot(texel.u, hit - p_ws), dot(texel.v, hit - p_ws));
+    return texels * min(1.0, frame.reading.most_texels / max(length(texels), 1e-6));
+}
+
+float lit_by_map(vec3 p_ws, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint, uvec2 pixel) {
     vec4 p = vec4(p_ws, 1.0);
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
     float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
     uvz /= w;
-    float lit = filtered(MapPoint(frame.size_texels * uvz.xy, uvz.z,
-                                  frame.bias.receiver_plane * texel.gradient, layer.index),
-                         pixel);
+    float lit = filtered(MapPoint(frame.size_texels * uvz.xy, uvz.z, frame.bias.receiver_plane * texel.gradient,
+                                  frame.bias.cone * length(texel.gradient), layer.index, layer.map.space),
+                         texel, to_light, footprint, pixel);
     // Weights sum to 1 but for rounding: what is all but lit or dark is.
     lit = clamp((1.0 + 2.0 * kRounding) * lit - kRounding, 0.0, 1.0);
     // Maps that are chosen among by their axis hold all receivers, and so do the sun's; what the bias moves
@@ -95,10 +174,16 @@ void main() {
     vec3 to_light = normalize(to_light_ws(push.light, p_ws));
     Layer layer = layer_of(depth, p_ws);
     TexelAt texel = kAffine != 0u
-                        ? affine_texel(layer.map, normal_ws, to_light)
+                        ? affine_texel(layer.map, frame.size_texels, normal_ws, to_light)
                         : projective_texel(layer.map, frame.size_texels, p_ws, normal_ws);
     vec3 biased_ws = biased_position(p_ws, normal_ws, to_light, texel, frame.bias);
-    float lit = lit_by_map(biased_ws, texel, layer, pixel);
+    mat2 footprint = mat2(0.0);
+    if (kFilter == kFilterFootprint) {
+        float near_depth = max(depth, kLeastDepth);
+        footprint = mat2(step_on_plane(texel, p_ws, normal_ws, pixel + uvec2(1u, 0u), near_depth),
+                         step_on_plane(texel, p_ws, normal_ws, pixel + uvec2(0u, 1u), near_depth));
+    }
+    float lit = lit_by_map(biased_ws, texel, layer, to_light, footprint, pixel);
     lit = faces_light(push.light, p_ws, normal_ws) ? lit : 0.0;
     if (all(lessThan(pixel, push.size))) {
         imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));

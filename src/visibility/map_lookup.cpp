@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -20,6 +21,15 @@ namespace gnomon {
 namespace {
 
 constexpr unsigned kGroupSize = 8;
+
+// What neighbouring facets of a curved surface rise above a receiver's plane, of what the plane
+// gains itself, found by sweeping over scenes and suns (bench/bias_sweep): less brings acne where
+// they fold, more detaches shadows.
+constexpr float kBesidePlane = 0.35f;
+
+// Of the range of distances: what is nearer to a receiver than this half its variance's root does
+// not hide it. Rounding of 32-bit moments is a hundred times less.
+constexpr float kLeastDeviation = 2e-4f;
 
 gpu::ComputePipelineInfo lookup_info(std::vector<std::uint32_t> constants) {
     using enum gpu::BindingType;
@@ -33,6 +43,7 @@ shared::MapLayerFrame layer_frame(const LightFit& fit) {
     const glm::dmat4 rows = glm::transpose(glm::dmat4(fit.clip_from_world));
     shared::MapLayerFrame layer{
         .u = 0.5 * (rows[0] + rows[3]), .v = 0.5 * (rows[1] + rows[3]), .z = rows[2], .w = rows[3]};
+    layer.space = map_space(fit);
     if (fit.affine) {
         const TexelSteps steps = fit.texel_steps();
         const float u_m = glm::length(steps.u_ws);
@@ -44,26 +55,66 @@ shared::MapLayerFrame layer_frame(const LightFit& fit) {
     return layer;
 }
 
+/// Taps at any distance are free of acne on a plane when what it gains over that is made up for.
+float cone(const ReadingOptions& reading, const BiasOptions& bias) {
+    if (reading.filter < MapFilter::disc) return 0.0f;
+    return (bias.receiver_plane ? kBesidePlane : 1.0f) *
+           static_cast<float>(bias.bias_slope + bias.normal_offset);
+}
+
 }  // namespace
 
-float filter_radius_texels(MapFilter filter) {
-    constexpr float kRadii[] = {0.5f, 1.0f, 1.5f, 2.0f, 2.5f};
-    return kRadii[static_cast<std::size_t>(filter)];
+float filter_radius_texels(const ReadingOptions& reading) {
+    constexpr float kBilinear = 1.0f;
+    if (is_blurred(reading.content)) return static_cast<float>(reading.blur) + kBilinear;
+    switch (reading.filter) {
+        case MapFilter::nearest:
+            return 0.5f;
+        case MapFilter::hardware_2x2:
+            return kBilinear;
+        case MapFilter::box_3x3:
+            return 1.5f;
+        case MapFilter::dithered_4:
+            return 2.5f;
+        case MapFilter::disc:
+            return static_cast<float>(reading.filter_radius) + kBilinear;
+        case MapFilter::footprint:
+            return static_cast<float>(0.5 * std::numbers::sqrt2 * reading.filter_most) + kBilinear;
+        case MapFilter::pcss:
+            return static_cast<float>(reading.filter_most) + kBilinear;
+        case MapFilter::box_4x4:
+            break;
+    }
+    return 2.0f;
+}
+
+float least_radius_texels(const ReadingOptions& reading) {
+    ReadingOptions least = reading;
+    least.filter_most = reading.filter == MapFilter::pcss ? 1.0 : 0.0;
+    return filter_radius_texels(least);
 }
 
 // A filter of several texels passes over the outermost part of its reach, which has little weight;
 // of few taps over less.
-float deciding_reach_texels(MapFilter filter) {
-    constexpr float kDecidingShares[] = {1.0f, 0.75f, 0.75f, 0.75f, 0.8f};
-    return std::sqrt(2.0f) * kDecidingShares[static_cast<std::size_t>(filter)] *
-           filter_radius_texels(filter);
+float deciding_reach_texels(const ReadingOptions& reading) {
+    const float diagonal = std::sqrt(2.0f);
+    if (is_blurred(reading.content)) return 0.75f * diagonal;
+    switch (reading.filter) {
+        case MapFilter::nearest:
+            return diagonal * 0.5f;
+        case MapFilter::box_3x3:
+            return diagonal * 0.75f * 1.5f;
+        case MapFilter::box_4x4:
+            return diagonal * 0.75f * 2.0f;
+        case MapFilter::dithered_4:
+            return diagonal * 0.8f * 2.5f;
+        default:  // bilinear taps
+            return diagonal * 0.75f;
+    }
 }
 
-float biased_reach_texels(MapFilter filter, bool receiver_plane) {
-    // What neighbouring facets of a curved surface rise above the plane, found by sweeping over
-    // scenes and suns (bench/bias_sweep): less brings acne where they fold, more detaches shadows.
-    constexpr float kBesidePlane = 0.35f;
-    return (receiver_plane ? kBesidePlane : 1.0f) * deciding_reach_texels(filter);
+float biased_reach_texels(const ReadingOptions& reading, bool receiver_plane) {
+    return (receiver_plane ? kBesidePlane : 1.0f) * deciding_reach_texels(reading);
 }
 
 float depth_at(const Camera& camera, Extent size, double distance_m) {
@@ -87,14 +138,18 @@ std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws
     return static_cast<std::size_t>(std::distance(all.subspan(1).begin(), after));
 }
 
-MapLookup::MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias)
+MapLookup::MapLookup(const gpu::Device& device, const ReadingOptions& reading,
+                     const BiasOptions& bias)
     : device_(device),
-      filter_(filter),
+      reading_(reading),
       bias_{.receiver_plane = bias.receiver_plane ? 1.0f : 0.0f,
-            .reach_texels = biased_reach_texels(filter, bias.receiver_plane),
+            .reach_texels = biased_reach_texels(reading, bias.receiver_plane),
             .constant = static_cast<float>(bias.bias_constant),
             .slope = static_cast<float>(bias.bias_slope),
-            .normal_offset = static_cast<float>(bias.normal_offset)},
+            .normal_offset = static_cast<float>(bias.normal_offset),
+            .cone = cone(reading, bias),
+            .distance_scale = static_cast<float>(reading.distance_scale),
+            .distance_offset = static_cast<float>(reading.distance_offset)},
       nearest_(device, {}),
       frame_(device, sizeof(shared::MapFrame),
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -103,9 +158,12 @@ MapLookup::MapLookup(const gpu::Device& device, MapFilter filter, const BiasOpti
 LookupPipeline& MapLookup::pipeline(const LookupLayers& layers) {
     const bool affine = std::ranges::all_of(
         layers.layers, [](const LookupLayer& layer) { return layer.fit.affine; });
-    const std::vector<std::uint32_t> constants{
-        static_cast<std::uint32_t>(filter_), static_cast<std::uint32_t>(layers.layers.size()),
-        affine ? 1u : 0u, static_cast<std::uint32_t>(layers.choice)};
+    const std::vector<std::uint32_t> constants{static_cast<std::uint32_t>(reading_.filter),
+                                               static_cast<std::uint32_t>(reading_.content),
+                                               static_cast<std::uint32_t>(reading_.filter_taps),
+                                               static_cast<std::uint32_t>(layers.layers.size()),
+                                               affine ? 1u : 0u,
+                                               static_cast<std::uint32_t>(layers.choice)};
     LookupPipeline& pipeline = pipelines_[constants];
     if (!pipeline) pipeline = LookupPipeline(device_, lookup_info(constants));
     return pipeline;
@@ -118,6 +176,11 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     assert(!layers.empty() && layers.size() <= shared::kMaxMapLayers);
     shared::MapFrame frame{};
     frame.bias = bias_;
+    frame.reading = {.radius_texels = static_cast<float>(reading_.filter_radius),
+                     .most_texels = static_cast<float>(reading_.filter_most),
+                     .exponent = static_cast<float>(reading_.exponent),
+                     .least_variance = kLeastDeviation * kLeastDeviation,
+                     .bleeding = static_cast<float>(reading_.light_bleeding)};
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         frame.layers[i] = layer_frame(layers[i].fit);

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "raster/receivers.h"
-#include "visibility/depth_map.h"
+#include "visibility/content_map.h"
+#include "visibility/light_fit.h"
 #include "visibility/lookup_pipeline.h"
 #include "visibility/map_lookup.shared.h"
 
@@ -11,16 +12,33 @@
 
 namespace gnomon {
 
-/// How a depth map is read, in the order of kFilterNearest, ...: map_filter.glsl.
-enum class MapFilter { nearest, hardware_2x2, box_3x3, box_4x4, dithered_4 };
+/// How texels are compared, in the order of kFilterNearest, ...: map_filter.glsl.
+enum class MapFilter { nearest, hardware_2x2, box_3x3, box_4x4, dithered_4, disc, footprint, pcss };
+
+/// How a map is read: compared through a filter, or, of contents that are blurred, once.
+struct ReadingOptions {
+    MapContent content = MapContent::depth;
+    MapFilter filter = MapFilter::box_4x4;
+    int filter_taps = 16;         // of disc, footprint, pcss
+    double filter_radius = 2.5;   // texels, of disc
+    double filter_most = 24.0;    // texels, of footprint, pcss
+    double blur = 2.0;            // texels, of contents that are blurred
+    double exponent = 40.0;       // of exponential contents
+    double light_bleeding = 0.2;  // shadows lighter than this are light
+    double distance_scale = 1.0;
+    double distance_offset = 0.0;
+};
 
 /// How far from the receiver the filter's outermost texels end, in texels along an axis.
-float filter_radius_texels(MapFilter filter);
-/// How far from the receiver a texel's centre may lie and still decide between light and shadow.
-float deciding_reach_texels(MapFilter filter);
+float filter_radius_texels(const ReadingOptions& reading);
+/// The same of the narrowest that a filter of varying width can be: what texels explain of an edge.
+float least_radius_texels(const ReadingOptions& reading);
+/// How far from the receiver a texel's centre may lie and still decide between light and shadow; of
+/// filters of any width without what `cone` adds.
+float deciding_reach_texels(const ReadingOptions& reading);
 /// For how much of that receivers are moved: for all, or, when texels are compared with the
 /// receiver's plane, for what surfaces differ from it.
-float biased_reach_texels(MapFilter filter, bool receiver_plane);
+float biased_reach_texels(const ReadingOptions& reading, bool receiver_plane);
 
 /// By how much receivers are moved before they are looked up: MapBias.
 struct BiasOptions {
@@ -53,10 +71,10 @@ float depth_at(const Camera& camera, Extent size, double distance_m);
 /// Which layer a point is looked up in.
 std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws);
 
-/// Compares receivers with a depth map; what lies outside of a spot's map is lit.
+/// Compares receivers with a map; what lies outside of a spot's map is lit.
 class MapLookup {
 public:
-    MapLookup(const gpu::Device& device, MapFilter filter, const BiasOptions& bias);
+    MapLookup(const gpu::Device& device, const ReadingOptions& reading, const BiasOptions& bias);
 
     void record(gpu::Commands& commands, const raster::Receivers& receivers, const Light& light,
                 const LookupLayers& layers, const gpu::Image& map, gpu::Image& visibility);
@@ -67,7 +85,7 @@ private:
     LookupPipeline& pipeline(const LookupLayers& layers);
 
     const gpu::Device& device_;
-    MapFilter filter_;
+    ReadingOptions reading_;
     shared::MapBias bias_;
     std::map<std::vector<std::uint32_t>, LookupPipeline> pipelines_;  // by constants
     gpu::Sampler nearest_;

@@ -9,26 +9,56 @@ namespace gnomon::shared {
 
 const uint kMaxMapLayers = 8u;
 
-// Specialization constants of map_lookup.comp.glsl, from 1: kFilter, kLayerCount, kAffine,
-// kLayerChoice
+// Specialization constants of map_lookup.comp.glsl, from 1: kFilter, kContent, kTaps, kLayerCount,
+// kAffine, kLayerChoice; of map_content.comp.glsl: kContent
 
 const uint kFilterNearest = 0u;
 const uint kFilterHardware2x2 = 1u;
 const uint kFilterBox3x3 = 2u;
 const uint kFilterBox4x4 = 3u;
 const uint kFilterDithered4 = 4u;
+const uint kFilterDisc = 5u;
+const uint kFilterFootprint = 6u;
+const uint kFilterPcss = 7u;
+
+const uint kContentDepth = 0u;
+const uint kContentDistance = 1u;
+const uint kContentPacked = 2u;
+const uint kContentPackedTwo = 3u;
+const uint kContentExponential = 4u;  // this and what follows is blurred instead of compared
+const uint kContentVariance = 5u;
+const uint kContentExponentialVariance = 6u;
+const uint kContentMoments = 7u;
 
 const uint kChooseByDistance = 0u;
 const uint kChooseByAxis = 1u;
 
 /// By how much receivers are moved before they are looked up: map_bias.glsl.
 struct MapBias {
-    float receiver_plane;  // 1: texels are compared with the receiver's plane there; 0: with its
-                           // depth
-    float reach_texels;    // over which a plane's gain of depth is made up for
-    float constant;        // texels, towards the light
-    float slope;           // times the depth that a plane gains over the filter's reach
-    float normal_offset;   // times the offset that frees a plane from the filter's reach
+    float receiver_plane;   // 1: texels are compared with the receiver's plane there; 0: with its
+                            // depth
+    float reach_texels;     // over which a plane's gain of depth is made up for
+    float constant;         // texels, towards the light
+    float slope;            // times the depth that a plane gains over the filter's reach
+    float normal_offset;    // times the offset that frees a plane from the filter's reach
+    float cone;             // of a plane's gain of depth, per texel that a tap is away
+    float distance_scale;   // a receiver's stored distance is multiplied by this,
+    float distance_offset;  // and less by this
+};
+
+/// How a map's contents are read: map_filter.glsl, map_moments.glsl.
+struct MapReadingFrame {
+    float radius_texels;   // of the disc
+    float most_texels;     // PCSS reaches no farther
+    float exponent;        // of exponential contents
+    float least_variance;  // of the depth's range, squared
+    float bleeding;        // shadows lighter than this, of a whole, are light
+};
+
+/// What turns depths of a layer into distances.
+struct MapSpace {
+    vec4 tangents;  // of a light within the world: half sizes, middle of its view
+    float reach;    // nearest over farthest distance along its axis; 0: of a light at infinity
 };
 
 struct MapLayerFrame {
@@ -38,12 +68,28 @@ struct MapLayerFrame {
     // and the longer of both steps in metres.
     vec3 steps;
     float first_depth;  // the layer's receivers are not nearer than this depth of the picture
+    MapSpace space;
 };
 
 struct MapFrame {
     MapLayerFrame layers[kMaxMapLayers];
     MapBias bias;
+    MapReadingFrame reading;
     float size_texels;
+};
+
+struct MapContentPush {
+    MapSpace space;
+    float exponent;
+    uint layer;
+    uint size;
+};
+
+struct MapBlurPush {
+    uvec2 step;  // (1, 0) or (0, 1)
+    uint layer;
+    uint size;
+    float radius_texels;
 };
 
 #ifdef __cplusplus

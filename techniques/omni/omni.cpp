@@ -31,7 +31,12 @@ const ParamTable<Options>& param_table() {
                 "the body whose faces the light looks into: six or four maps"),
          choice("fit", &Options::fit, {"tight", "whole"},
                 "tight: a face shows what receivers need of it; whole: all of it, and stays as it "
-                "is when the camera moves")},
+                "is when the camera moves"),
+         number<Options>(
+             "distance_scale", &Options::distance_scale, 0.5, 1.0, "1",
+             "of contents that are distances: a receiver's, squared, is multiplied by this"),
+         number<Options>("distance_offset", &Options::distance_offset, 0.0, 1.0, "1",
+                         "and less by this, of the scene's farthest, squared")},
         map_rows<Options>());
     return table;
 }

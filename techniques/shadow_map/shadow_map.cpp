@@ -45,7 +45,9 @@ const TechniqueInfo& shadow_map_info() {
     static const TechniqueInfo info{
         .name = "shadow_map",
         .title = "Shadow map",
-        .source = "williams1978, reeves1987, bunnell2004, king2004, isidoro2006, holbert2011",
+        .source =
+            "williams1978, reeves1987, bunnell2004, gerasimov2004, king2004, fernando2005, "
+            "isidoro2006, donnelly2006, annen2008, lauritzen2008, holbert2011, peters2015",
         .lights = LightKinds::directional | LightKinds::spot,
         .penumbra = Penumbra::fixed_width,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "gpu/commands.h"
+#include "visibility/light_fit.h"
+#include "visibility/map_lookup.shared.h"
+
+#include <span>
+
+namespace gnomon {
+
+/// What a map's texels hold, in the order of kContentDepth, ...: what the light saw, or, from
+/// `exponential` on, what can be blurred and bounds how much of it is nearer than a receiver.
+enum class MapContent {
+    depth,       ///< as it was drawn
+    distance,    ///< 32-bit float; of lights within the world squared
+    packed,      ///< the distance in four bytes
+    packed_two,  ///< and in two, a whole part and a fraction
+    exponential,
+    variance,
+    exponential_variance,
+    moments
+};
+
+inline bool is_blurred(MapContent content) {
+    return content >= MapContent::exponential;
+}
+
+/// How a layer's depths become distances from its light.
+shared::MapSpace map_space(const LightFit& fit);
+
+/// A map's contents, where they are not the depths themselves: a layer for each of its.
+class ContentMap {
+public:
+    /// `exponent` of exponential contents; `blur_texels`: where the blur ends.
+    ContentMap(const gpu::Device& device, MapContent content, float exponent, float blur_texels);
+
+    /// From a map of square layers, as many as `fits`, that is ready to be sampled; so are the
+    /// contents afterwards.
+    void record(gpu::Commands& commands, const gpu::Image& depths, std::span<const LightFit> fits);
+
+    const gpu::Image& image() const { return image_; }
+    std::uint64_t memory_bytes() const { return image_.memory_bytes() + between_.memory_bytes(); }
+
+private:
+    void make_images(const gpu::Image& depths);
+    void blur(gpu::Commands& commands, gpu::Image& source, gpu::Image& target, glm::uvec2 step);
+
+    const gpu::Device& device_;
+    MapContent content_;
+    float exponent_, blur_texels_;
+    gpu::Pipeline fill_, blur_;
+    gpu::Sampler nearest_;
+    gpu::Image image_, between_;  // `between_`: blurred along one axis
+};
+
+}  // namespace gnomon

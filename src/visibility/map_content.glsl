@@ -1,0 +1,46 @@
+// What a texel holds other than the depth that was drawn into it, and what it is compared with. Distances:
+// P. Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems 2004, chapter 12. Departure: distances are
+// computed from depths by a pass over the map, so that casters are drawn as fast as for any content.
+
+#ifndef GNOMON_VISIBILITY_MAP_CONTENT_GLSL
+#define GNOMON_VISIBILITY_MAP_CONTENT_GLSL
+
+#include "visibility/map_lookup.shared.h"
+
+// How far from the light, 0 to 1, along its axis.
+float distance_along(MapSpace space, float depth) {
+    return space.reach > 0.0 ? space.reach / max(depth, space.reach) : 1.0 - depth;
+}
+
+// How far from the light, 0 to 1: for lights within the world, squared. `uv` is in the map, 0 to 1.
+float distance_of(MapSpace space, vec2 uv, float depth) {
+    float along = distance_along(space, depth);
+    vec2 tangents = (2.0 * uv - 1.0) * space.tangents.xy + space.tangents.zw;
+    return space.reach > 0.0 ? min(along * along * (1.0 + dot(tangents, tangents)), 1.0) : along;
+}
+
+// Four bytes, the first of the most weight.
+vec4 packed_in_four(float value) {
+    vec4 scaled = fract(value * vec4(1.0, 256.0, 65536.0, 16777216.0) * (1.0 - 1.0 / 16777216.0));
+    return floor(256.0 * scaled) / 255.0;
+}
+
+float unpacked_from_four(vec4 bytes) {
+    return dot(bytes, 255.0 / 256.0 * vec4(1.0, 1.0 / 256.0, 1.0 / 65536.0, 1.0 / 16777216.0));
+}
+
+// The whole of 256ths, and the rest.
+vec4 packed_in_two(float value) {
+    float scaled = min(256.0 * value, 255.998);
+    return vec4(floor(scaled) / 255.0, vec3(fract(scaled)));
+}
+
+float unpacked_from_two(vec4 bytes) { return (255.0 * bytes.x + bytes.y) / 256.0; }
+
+// How far off a stored distance may be for its number of bits.
+float quantum(uint content) {
+    return content == kContentPacked ? 1.0 / 8388608.0
+                                     : (content == kContentPackedTwo ? 1.0 / 65536.0 : 0.0);
+}
+
+#endif

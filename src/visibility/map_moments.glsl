@@ -1,0 +1,66 @@
+// Light from moments of a map's distances, which can be blurred: bounds of how much of what was averaged lies
+// before the receiver. W. Donnelly, A. Lauritzen, "Variance Shadow Maps", I3D 2006; A. Lauritzen,
+// M. McCool, "Layered Variance Shadow Maps", GI 2008, for exponential warps and the cure of light bleeding;
+// T. Annen et al., "Exponential Shadow Maps", GI 2008; C. Peters, R. Klein, "Moment Shadow Mapping", I3D 2015.
+
+#ifndef GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
+#define GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
+
+// Moments are moved this far towards those of an even spread, lest rounding make them impossible.
+const float kMomentBias = 3e-6;
+
+// exp(c d) of a distance from -1 to 1, over exp(c).
+float warped(float along, float exponent) { return exp(2.0 * exponent * (along - 1.0)); }
+
+// exp(c d) and -exp(-c d) of distances from -1 to 1, and their squares: two bounds, of which the lower counts.
+vec4 warped_moments(float along, float exponent) {
+    float d = 2.0 * along - 1.0;
+    float positive = exp(exponent * d);
+    float negative = -exp(-exponent * d);
+    return vec4(positive, positive * positive, negative, negative * negative);
+}
+
+// What can lie behind `value` at most, when mean and mean square are known: Cantelli's inequality.
+float most_behind(vec2 moments, float value, float least_variance) {
+    float variance = max(moments.y - moments.x * moments.x, least_variance);
+    float before = max(value - moments.x, 0.0);
+    return variance / (variance + before * before);
+}
+
+float lit_by_warped_variance(vec4 moments, float along, float exponent, float least_variance) {
+    vec4 receiver = warped_moments(along, exponent);
+    // A step in distance is a step in its warp, longer by its slope.
+    vec2 step = exponent * vec2(receiver.x, receiver.z);
+    return min(most_behind(moments.xy, receiver.x, least_variance * step.x * step.x),
+               most_behind(moments.zw, receiver.z, least_variance * step.y * step.y));
+}
+
+// Of all distributions with these four moments, the one with the least before the receiver: Hamburger's
+// problem, by a Cholesky factorisation of the moments' matrix and the roots of a quadratic.
+float lit_by_moments(vec4 moments, float along) {
+    vec4 b = mix(moments, vec4(0.5), kMomentBias);
+    float l32_d22 = b.z - b.x * b.y;
+    float d22 = b.y - b.x * b.x;
+    float variance_of_square = b.w - b.y * b.y;
+    float d33_d22 = dot(vec2(variance_of_square, -l32_d22), vec2(d22, l32_d22));
+    float l32 = l32_d22 / d22;
+    vec3 c = vec3(1.0, along, along * along);
+    c.y -= b.x;
+    c.z -= b.y + l32 * c.y;
+    c.y /= d22;
+    c.z *= d22 / d33_d22;
+    c.y -= l32 * c.z;
+    c.x -= dot(c.yz, b.xy);
+    float p = c.y / c.z;
+    float root = sqrt(max(0.25 * p * p - c.x / c.z, 0.0));
+    float near = -0.5 * p - root;
+    float far = -0.5 * p + root;
+    // Before both roots nothing hides the receiver; behind the first it counts whole, between them in part.
+    vec4 part = far < along ? vec4(near, along, 1.0, 1.0)
+                            : (near < along ? vec4(along, near, 0.0, 1.0) : vec4(0.0));
+    float quotient = (part.x * far - b.x * (part.x + far) + b.y) /
+                     ((far - part.y) * (along - near));
+    return 1.0 - clamp(part.z + part.w * quotient, 0.0, 1.0);
+}
+
+#endif
