@@ -208,7 +208,7 @@ int run(int argc, char** argv) {
     const LightFit fit = fit_directional(directional_light(scene),
                                          visible_corners(frame.camera, kView, scene.bounds()),
                                          scene.bounds(), size_texels, kMarginTexels);
-    const Mat4 clip_from_world = fit.clip_from_world;
+    const Mat4 clip_from_world(fit.clip_from_world);
 
     gpu::Submission submission(device);
     const WorldMesh world(device, scene);

@@ -121,7 +121,9 @@ protected:
     /// to the lamp than the plane of the other, extended to them, and darken its outermost texel to
     /// just below a half; and at the edge of a caster the bias moves receivers out of the shadow of
     /// what shares the edge. No more than a few pixels of a picture.
-    double edge_share() const { return info().name == "omni" ? 0.001 : 0.0; }
+    double edge_share() const {
+        return info().name == "omni" || info().name == "psm" ? 0.001 : 0.0;
+    }
 
     void expect_truth(const Scene& scene, const Camera& camera,
                       const std::vector<Light>& lights = sun_and_point()) const {
@@ -334,7 +336,7 @@ TEST_P(Degenerate, CameraInsideASolid) {
     const Scene scene =
         test::make_scene({test::box({-2, 0, -2}, {2, 2.5f, 2}), caster_box(), sheet()});
     const Camera camera = look_at({1.6f, 1.9f, 1.7f}, {0, 0.8f, 0}, radians(75.0f));
-    if (info().name == "lispsm" || info().name == "tsm") {
+    if (info().name == "lispsm" || info().name == "tsm" || info().name == "psm") {
         // Known failure: warped by a near plane that nothing is at, texels at the far wall are so
         // coarse that light leaks in under the ceiling, within the bias.
         const Frame frame{.scene = scene, .camera = camera, .light = hard_sun(), .size = kSize};

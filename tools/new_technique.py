@@ -118,9 +118,9 @@ void main() {
     float depth = texelFetch(depths, ivec2(pixel), 0).x;
     float lit = 1.0;  // where there is no receiver
     if (depth > 0.0) {
-        vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, depth);
+        vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, depth);
         vec3 normal_ws = unpack_unit_vector(imageLoad(normals, ivec2(pixel)).x);
-        lit = faces_light(push.light, p_ws, normal_ws) ? 1.0 : 0.0;  // TODO what casts on p_ws?
+        lit = faces_light(push.light, p_es, normal_ws) ? 1.0 : 0.0;  // TODO what casts on p_ws?
     }
     imageStore(visibility, ivec2(pixel), vec4(lit));
 }

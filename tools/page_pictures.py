@@ -49,6 +49,12 @@ PICTURES = {
                 for content in ("variance", "exponential_variance", "moments")]),
     "omni": ("1280x720", (640, 420, 960, 600), 3, [
         "torches", "torches --technique omni", "torches --technique omni --omni.projection tetrahedral"]),
+    "psm-suns": ("1280x720", (470, 300, 710, 440), 4, [
+        f"field-small --light sun:{light}{technique}"
+        for light in ("elevation=85,azimuth=0", "elevation=30,azimuth=180", "elevation=30,azimuth=90", "elevation=30,azimuth=0")
+        for technique in ("", f" {MAP}", " --technique psm", " --technique psm --psm.map cube")]),
+    "psm-near": ("1280x720", (0, 380, 480, 620), 2, [
+        f"courtyard --technique psm --psm.virtual_camera {camera}" for camera in ("none", "near_quad")]),
     "pssm": ("1280x720", (440, 300, 760, 460), 3, [
         "field-small", f"field-small {MAP}", "field-small --technique pssm"]),
     "pssm-splits": ("1280x720", (480, 280, 960, 440), 2, [

@@ -82,6 +82,12 @@ Mat4 Receivers::world_from_clip() const {
         glm::inverse(glm::dmat4(camera.clip_from_view(size)) * glm::dmat4(camera.view_from_world)));
 }
 
+Mat4 Receivers::eye_from_clip() const {
+    glm::dmat4 view(camera.view_from_world);
+    view[3] = view * glm::dvec4(DVec3(camera.eye_ws()), 1.0);
+    return Mat4(glm::inverse(glm::dmat4(camera.clip_from_view(size)) * view));
+}
+
 ReceiverPass::ReceiverPass(const gpu::Device& device)
     : device_(device),
       opaque_(receiver_pipeline(device, false)),

@@ -20,6 +20,8 @@ struct Receivers {
 
     /// From pixel (x, y, depth) in NDC to the world, of the camera that was drawn.
     Mat4 world_from_clip() const;
+    /// The same with the camera's eye as the world's origin: exact far from that too.
+    Mat4 eye_from_clip() const;
 };
 
 /// What the camera sees looks like; for lighting.

@@ -43,7 +43,7 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
             "bytes or two; or what is blurred, and bounds how much of it hides a receiver"),
         choice<Options, MapFilter>("filter", &Options::filter,
                                    {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4",
-                                    "disc", "footprint", "pcss"},
+                                    "taps_16", "disc", "footprint", "pcss"},
                                    "how texels are compared, where they are not blurred"),
         integer<Options>("filter_taps", &Options::filter_taps, 1, 64, "1",
                          "of disc, footprint and pcss, which searches with as many again"),

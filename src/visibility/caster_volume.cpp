@@ -35,7 +35,7 @@ CasterVolume::CasterVolume(const LightFit& fit, std::span<const glm::dvec4> plan
 
 // |x| <= w and |y| <= w in the map's clip space, as planes of the world.
 void CasterVolume::add_sides(const LightFit& fit) {
-    const glm::dmat4 rows = glm::transpose(glm::dmat4(fit.clip_from_world));
+    const glm::dmat4 rows = glm::transpose(fit.clip_from_world);
     for (const glm::dvec4& plane :
          {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1], rows[3] + rows[1]}) {
         const double length = glm::length(DVec3(plane));

@@ -37,7 +37,7 @@ shared::MapSpace map_space(const LightFit& fit) {
     shared::MapSpace space{};
     if (!(fit.far_m > 0.0)) return space;
     // x and y of the map are (right - middle * along) / half over the distance along the axis.
-    const glm::dmat4 rows = glm::transpose(glm::dmat4(fit.clip_from_world));
+    const glm::dmat4 rows = glm::transpose(fit.clip_from_world);
     const DVec3 along(rows[3]);
     glm::dvec2 half, middle;
     for (int axis = 0; axis < 2; ++axis) {

@@ -128,7 +128,7 @@ bool DepthMap::make_image(unsigned size_texels, unsigned layers) {
 
 std::vector<DepthMap::CasterDraw> DepthMap::place_casters(const raster::GpuScene& scene,
                                                           const MapLayer& layer) {
-    const glm::dmat4 from_world(layer.fit.clip_from_world);
+    const glm::dmat4& from_world = layer.fit.clip_from_world;
     std::vector<CasterDraw> draws;
     for (const raster::Draw& draw : scene.draws()) {
         for (std::uint32_t i = draw.first_part; i < draw.first_part + draw.part_count; ++i) {

@@ -176,7 +176,7 @@ LightFit parallel_fit(const Footprint& footprint, CastersRange range, unsigned s
     clip[3] = DVec4(0.0, 0.0, 1.0 - range.high_m / depth_m, 1.0);
     clip[3] -= DVec4(glm::dvec2(clip * DVec4(footprint.center, 0.0, 0.0)), 0.0, 0.0);
     LightFit fit;
-    fit.clip_from_world = Mat4(clip * footprint.light_from_world);
+    fit.clip_from_world = clip * footprint.light_from_world;
     fit.size_texels = size_texels;
     return fit;
 }
@@ -227,7 +227,7 @@ double used_texels(unsigned size_texels, float margin_texels) {
 // coordinates; the step that moves it least for its length is one along the longer side of a texel,
 // and by how much is the matrix's smaller singular value.
 float LightFit::texel_size_m(Vec3 p_ws) const {
-    const glm::dmat4 rows = glm::transpose(glm::dmat4(clip_from_world));
+    const glm::dmat4 rows = glm::transpose(clip_from_world);
     const DVec4 p(DVec3(p_ws), 1.0);
     const double w = glm::dot(rows[3], p);
     if (!(w > 0.0)) return 0.0f;
@@ -242,7 +242,7 @@ float LightFit::texel_size_m(Vec3 p_ws) const {
 }
 
 TexelSteps LightFit::texel_steps() const {
-    const glm::dmat4 rows = glm::transpose(glm::dmat4(clip_from_world));
+    const glm::dmat4 rows = glm::transpose(clip_from_world);
     const DVec3 u = 0.5 * size_texels * DVec3(rows[0]);
     const DVec3 v = 0.5 * size_texels * DVec3(rows[1]);
     return {Vec3(u / glm::dot(u, u)), Vec3(v / glm::dot(v, v))};
@@ -296,6 +296,31 @@ LightFit fit_directional_stable(const DirectionalLight& light, const Camera& cam
     const glm::dvec2 snapped = glm::floor(middle / texel_m + 0.5) * texel_m;
     return parallel_fit({view, snapped, {1.0, 0.0}, glm::dvec2(side_m)},
                         casters_range(view, bounds), size_texels, margin);
+}
+
+LightFit fit_image(const glm::dmat4& image_from_world, std::span<const DVec3> receivers_ws,
+                   unsigned size_texels, float margin_texels) {
+    /// Of the depth range, on either side: what is biased stays within it.
+    constexpr double kDepthMargin = 0.01;
+    DVec3 low(std::numeric_limits<double>::infinity());
+    DVec3 high = -low;
+    for (const DVec3& p_ws : receivers_ws) {
+        const DVec4 p = image_from_world * DVec4(p_ws, 1.0);
+        low = glm::min(low, DVec3(p) / p.w);
+        high = glm::max(high, DVec3(p) / p.w);
+    }
+    const double used_share = used_texels(size_texels, margin_texels) / size_texels;
+    const DVec3 size = glm::max(high - low, DVec3(1e-12)) * DVec3(1, 1, 1.0 + 2.0 * kDepthMargin);
+    const DVec3 scale = DVec3(2.0 * used_share, 2.0 * used_share, 1.0) / size;
+    glm::dmat4 to_map(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+        to_map[axis][axis] = scale[axis];
+    to_map[3] = DVec4(-0.5 * scale * (low + high) + DVec3(0.0, 0.0, 0.5), 1.0);
+    LightFit fit;
+    fit.clip_from_world = to_map * image_from_world;
+    fit.size_texels = size_texels;
+    fit.affine = false;
+    return fit;
 }
 
 }  // namespace gnomon

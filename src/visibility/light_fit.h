@@ -2,6 +2,7 @@
 
 #include <gnomon/scene.h>
 
+#include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/vector_double4.hpp>
 
 #include <limits>
@@ -39,9 +40,9 @@ struct TexelSteps {
 
 /// A light's square map: where its texels are.
 struct LightFit {
-    Mat4 clip_from_world{1.0f};  ///< reversed Z: 1 nearest to the light
-    unsigned size_texels = 1;    ///< of a side
-    bool affine = true;          ///< all texels are of one size
+    glm::dmat4 clip_from_world{1.0};  ///< reversed Z: 1 nearest to the light
+    unsigned size_texels = 1;         ///< of a side
+    bool affine = true;               ///< all texels are of one size
     /// Casters nearer than the near plane are clamped to it, as a light at infinity wants; else
     /// they are not seen.
     bool clamps_near = true;
@@ -67,5 +68,11 @@ LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> r
 LightFit fit_directional_stable(const DirectionalLight& light, const Camera& camera, Extent size,
                                 DepthRange range, const Box3& bounds, unsigned size_texels,
                                 float margin_texels);
+
+/// A map around the image of `receivers_ws`, none of which is behind the image's eye. Its depth
+/// range is theirs: casters above it are clamped to the near plane, which keeps them in front of
+/// everything and spends no precision on them.
+LightFit fit_image(const glm::dmat4& image_from_world, std::span<const DVec3> receivers_ws,
+                   unsigned size_texels, float margin_texels);
 
 }  // namespace gnomon

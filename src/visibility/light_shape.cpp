@@ -44,9 +44,12 @@ shared::LightShape light_shape(const Light& light) {
 }
 
 shared::ReceiverPush receiver_push(const raster::Receivers& receivers, const Light& light) {
-    return {.world_from_clip = receivers.world_from_clip(),
-            .light = light_shape(light),
-            .size = {receivers.size.width, receivers.size.height}};
+    shared::ReceiverPush push{.es_from_clip = receivers.eye_from_clip(),
+                              .light = light_shape(light),
+                              .size = {receivers.size.width, receivers.size.height}};
+    if (push.light.kind != shared::kLightDirectional)
+        push.light.position -= receivers.camera.eye_ws();
+    return push;
 }
 
 }  // namespace gnomon

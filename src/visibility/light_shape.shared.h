@@ -26,9 +26,11 @@ struct LightShape {
     vec3 normal;  // disc, rect: the side that shines
 };
 
-/// Enough to find each receiver and to tell whether it faces the light.
+/// Enough to find each receiver and to tell whether it faces the light. `_es`: the axes of the
+/// world with the camera's eye as origin, where floats are finest however far away the world's own
+/// origin is; the light is there as well.
 struct ReceiverPush {
-    mat4 world_from_clip;
+    mat4 es_from_clip;
     LightShape light;
     uvec2 size;
 };

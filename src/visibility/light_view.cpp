@@ -123,12 +123,16 @@ LightView fitted(const LightView& view, std::span<const DVec3> receivers_ws) {
     return part;
 }
 
+double near_light_m(const Box3& bounds) {
+    // Of the scene's size: a few roundings of coordinates. Reversed Z keeps precision however near
+    // that is.
+    constexpr double kNearFraction = 1e-6;
+    return kNearFraction * static_cast<double>(std::max(bounds.diagonal(), 1e-3f));
+}
+
 LightFit fit_view(const LightView& view, const Box3& bounds, unsigned size_texels,
                   float margin_texels) {
-    // Of the scene's size: what is nearer to the light than a few roundings of coordinates is taken
-    // to touch it. Reversed Z keeps precision however near that is.
-    constexpr double kNearFraction = 1e-6;
-    const double near_m = kNearFraction * std::max(bounds.diagonal(), 1e-3f);
+    const double near_m = near_light_m(bounds);
     const glm::dvec2 half =
         0.5 * (view.high - view.low) * (size_texels / used_texels(size_texels, margin_texels));
     const glm::dvec2 middle = 0.5 * (view.low + view.high);
@@ -139,7 +143,7 @@ LightFit fit_view(const LightView& view, const Box3& bounds, unsigned size_texel
     const glm::dmat4 rows((right - middle.x * along) / half.x, (up - middle.y * along) / half.y,
                           DVec4(0, 0, 0, near_m), along);
     LightFit fit;
-    fit.clip_from_world = Mat4(glm::transpose(rows));
+    fit.clip_from_world = glm::transpose(rows);
     fit.size_texels = size_texels;
     fit.affine = false;
     fit.far_m = farthest_m(bounds, view.position_ws);

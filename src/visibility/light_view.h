@@ -37,6 +37,9 @@ std::vector<LightView> tetrahedron_views(DVec3 position_ws);
 /// it.
 LightView fitted(const LightView& view, std::span<const DVec3> receivers_ws);
 
+/// What is nearer to the light than this is taken to touch it, and casts no shadow.
+double near_light_m(const Box3& bounds);
+
 /// The view's map, with `margin_texels` around it.
 LightFit fit_view(const LightView& view, const Box3& bounds, unsigned size_texels,
                   float margin_texels);

@@ -2,9 +2,7 @@
 // the view as the light sees it; then a perspective along y, whose eye is at some distance before
 // the receivers, magnifies what is near. Light stays parallel to z, so nothing is ever behind the
 // eye that can cast on a receiver, and depths are well-behaved: that is what sets these maps off
-// from perspective shadow maps. Departure: the depth range is that of the receivers. Casters above
-// it are clamped to its near plane, which keeps them in front of everything and spends no precision
-// on them.
+// from perspective shadow maps. Departure: the depth range is that of the receivers (fit_image).
 
 #include "visibility/light_warp.h"
 
@@ -24,9 +22,6 @@ using DVec4 = glm::dvec4;
 
 /// Less than this between view and light gains nothing: a tenth of a degree.
 constexpr double kLeastSine = 2e-3;
-
-/// Of the depth range, on either side: what is biased stays within it.
-constexpr double kDepthMargin = 0.01;
 
 /// The trapezoid's focus gets four fifths of the map, as Martin and Tan propose.
 constexpr double kFocusShare = 0.8;
@@ -119,28 +114,7 @@ LightFit fit_warped(Warp warp, double focus, const DirectionalLight& light, cons
     const glm::dmat4 warped = perspective_along_y(near_m, near_m + length_m, body.low.y,
                                                   0.5 * (body.low.z + body.high.z)) *
                               light_space;
-    Bounds image;
-    for (const DVec3& p : receivers_ws) {
-        const DVec4 p_cs = warped * DVec4(p, 1.0);
-        image.include(DVec3(p_cs) / p_cs.w);
-    }
-    const double used = used_texels(size_texels, margin_texels);
-    const double depth_margin = kDepthMargin * std::max(image.high.z - image.low.z, 1e-12);
-    const DVec3 size =
-        glm::max(image.high - image.low, DVec3(1e-12)) + DVec3(0.0, 0.0, 2.0 * depth_margin);
-    const DVec3 middle = 0.5 * (image.low + image.high);
-    const DVec3 scale(2.0 * used / size_texels / size.x, 2.0 * used / size_texels / size.y,
-                      1.0 / size.z);
-    glm::dmat4 to_map(1.0);
-    to_map[0][0] = scale.x;
-    to_map[1][1] = scale.y;
-    to_map[2][2] = scale.z;
-    to_map[3] = DVec4(-scale * middle + DVec3(0.0, 0.0, 0.5), 1.0);
-    LightFit fit;
-    fit.clip_from_world = Mat4(to_map * warped);
-    fit.size_texels = size_texels;
-    fit.affine = false;
-    return fit;
+    return fit_image(warped, receivers_ws, size_texels, margin_texels);
 }
 
 }  // namespace gnomon

@@ -37,7 +37,7 @@ TEST(FitWarped, HoldsItsReceivers) {
         EXPECT_EQ(fit.affine, warp == Warp::none);
         const double inner = 1.0 - 2.0 * static_cast<double>(kMargin) / kMapSize;
         for (const DVec3& p : view.receivers_ws) {
-            const glm::dvec4 p_cs = glm::dmat4(fit.clip_from_world) * glm::dvec4(p, 1.0);
+            const glm::dvec4 p_cs = fit.clip_from_world * glm::dvec4(p, 1.0);
             ASSERT_GT(p_cs.w, 0.0);
             EXPECT_LE(std::abs(p_cs.x / p_cs.w), inner + 1e-4);
             EXPECT_LE(std::abs(p_cs.y / p_cs.w), inner + 1e-4);

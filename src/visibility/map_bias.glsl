@@ -36,8 +36,8 @@ TexelAt affine_texel(MapLayerFrame layer, float size_texels, vec3 normal_ws, vec
 // Of any map, by the gradients of its texel coordinates u, v and its depth z at a point of the world:
 // in (u, v, z) the plane of normal n has the normal m = (gradients)^-T n, and gains |m.uv / m.z| of depth
 // over a texel, as much as moving by |m.uv| along n does.
-TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_ws, vec3 normal_ws) {
-    vec4 p = vec4(p_ws, 1.0);
+TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_es, vec3 normal_ws) {
+    vec4 p = vec4(p_es, 1.0);
     float w = dot(layer.w, p);
     vec3 uvz = vec3(dot(layer.u, p), dot(layer.v, p), dot(layer.z, p)) / w;
     vec3 u = (size_texels / w) * (layer.u.xyz - uvz.x * layer.w.xyz);
@@ -58,10 +58,10 @@ TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_ws, vec3
 }
 
 // `to_light` is a unit vector.
-vec3 biased_position(vec3 p_ws, vec3 normal_ws, vec3 to_light, TexelAt texel, MapBias bias) {
+vec3 biased_position(vec3 p_es, vec3 normal_ws, vec3 to_light, TexelAt texel, MapBias bias) {
     float offset_m = bias.reach_texels * texel.offset_m;
     float cosine = max(dot(normal_ws, to_light), 1.0 / kMaxSlope);
-    return p_ws + normal_ws * (bias.normal_offset * offset_m) +
+    return p_es + normal_ws * (bias.normal_offset * offset_m) +
            to_light * (bias.constant * texel.side_m + bias.slope * offset_m / cosine);
 }
 

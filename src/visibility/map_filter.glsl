@@ -128,6 +128,14 @@ float lit_dithered_4(sampler2DArray map, float size, MapBias bias, MapPoint poin
     return 0.25 * lit;
 }
 
+// All sixteen.
+float lit_taps_16(sampler2DArray map, float size, MapBias bias, MapPoint point) {
+    float lit = 0.0;
+    for (int i = 0; i < 16; ++i)
+        lit += lit_bilinear(map, size, bias, point, point.texel + vec2(i % 4, i / 4) - 1.5);
+    return lit / 16.0;
+}
+
 // Of a pixel, in [0, 1): neighbours differ as much as they can. J. Jimenez, "Next Generation Post Processing in
 // Call of Duty: Advanced Warfare", SIGGRAPH 2014 courses.
 float gradient_noise(uvec2 pixel) {

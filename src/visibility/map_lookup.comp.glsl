@@ -39,13 +39,13 @@ struct Layer {
 
 // The last layer that begins before the receiver, or the one along whose axis it is farthest. All are read
 // and one is chosen, number by number: an index that differs between pixels would be followed pixel by pixel.
-Layer layer_of(float depth, vec3 p_ws) {
+Layer layer_of(float depth, vec3 p_es) {
     Layer layer = Layer(frame.layers[0], 0.0);
     for (uint i = 1u; i < kLayerCount; ++i) {
         MapLayerFrame next = frame.layers[i];
         bool chosen = kLayerChoice == kChooseByDistance
                           ? depth < next.first_depth
-                          : dot(next.w, vec4(p_ws, 1.0)) > dot(layer.map.w, vec4(p_ws, 1.0));
+                          : dot(next.w, vec4(p_es, 1.0)) > dot(layer.map.w, vec4(p_es, 1.0));
         layer.map.u = mix(layer.map.u, next.u, bvec4(chosen));
         layer.map.v = mix(layer.map.v, next.v, bvec4(chosen));
         layer.map.z = mix(layer.map.z, next.z, bvec4(chosen));
@@ -122,6 +122,8 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
             return lit_box_3x3(map, size, frame.bias, point);
         case kFilterDithered4:
             return lit_dithered_4(map, size, frame.bias, point, pixel);
+        case kFilterTaps16:
+            return lit_taps_16(map, size, frame.bias, point);
         case kFilterDisc:
             return lit_disc(map, size, frame.bias, point, mat2(frame.reading.radius_texels),
                             gradient_noise(pixel));
@@ -134,20 +136,20 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
 }
 
 // From a pixel to the next on the receiver's plane, in texels.
-vec2 step_on_plane(TexelAt texel, vec3 p_ws, vec3 normal_ws, uvec2 next, float depth) {
+vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float depth) {
     // Two points of the next pixel's ray.
-    vec3 far = receiver_position(push.world_from_clip, next, push.size, depth);
-    vec3 near = receiver_position(push.world_from_clip, next, push.size, 1.5 * depth);
+    vec3 far = receiver_position(push.es_from_clip, next, push.size, depth);
+    vec3 near = receiver_position(push.es_from_clip, next, push.size, 1.5 * depth);
     vec3 along = far - near;
     float slope = dot(normal_ws, along);
     float least = 1e-3 * length(along);
-    vec3 hit = far + along * dot(normal_ws, p_ws - far) / (slope < 0.0 ? min(slope, -least) : max(slope, least));
-    vec2 texels = vec2(dot(texel.u, hit - p_ws), dot(texel.v, hit - p_ws));
+    vec3 hit = far + along * dot(normal_ws, p_es - far) / (slope < 0.0 ? min(slope, -least) : max(slope, least));
+    vec2 texels = vec2(dot(texel.u, hit - p_es), dot(texel.v, hit - p_es));
     return texels * min(1.0, frame.reading.most_texels / max(length(texels), 1e-6));
 }
 
-float lit_by_map(vec3 p_ws, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint, uvec2 pixel) {
-    vec4 p = vec4(p_ws, 1.0);
+float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint, uvec2 pixel) {
+    vec4 p = vec4(p_es, 1.0);
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
     float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
     uvz /= w;
@@ -169,22 +171,22 @@ void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     ivec2 at = ivec2(min(pixel, push.size - 1u));
     float depth = texelFetch(depths, at, 0).x;
-    vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, max(depth, kLeastDepth));
+    vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, max(depth, kLeastDepth));
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
-    vec3 to_light = normalize(to_light_ws(push.light, p_ws));
-    Layer layer = layer_of(depth, p_ws);
+    vec3 to_light = normalize(to_light_ws(push.light, p_es));
+    Layer layer = layer_of(depth, p_es);
     TexelAt texel = kAffine != 0u
                         ? affine_texel(layer.map, frame.size_texels, normal_ws, to_light)
-                        : projective_texel(layer.map, frame.size_texels, p_ws, normal_ws);
-    vec3 biased_ws = biased_position(p_ws, normal_ws, to_light, texel, frame.bias);
+                        : projective_texel(layer.map, frame.size_texels, p_es, normal_ws);
+    vec3 biased_es = biased_position(p_es, normal_ws, to_light, texel, frame.bias);
     mat2 footprint = mat2(0.0);
     if (kFilter == kFilterFootprint) {
         float near_depth = max(depth, kLeastDepth);
-        footprint = mat2(step_on_plane(texel, p_ws, normal_ws, pixel + uvec2(1u, 0u), near_depth),
-                         step_on_plane(texel, p_ws, normal_ws, pixel + uvec2(0u, 1u), near_depth));
+        footprint = mat2(step_on_plane(texel, p_es, normal_ws, pixel + uvec2(1u, 0u), near_depth),
+                         step_on_plane(texel, p_es, normal_ws, pixel + uvec2(0u, 1u), near_depth));
     }
-    float lit = lit_by_map(biased_ws, texel, layer, to_light, footprint, pixel);
-    lit = faces_light(push.light, p_ws, normal_ws) ? lit : 0.0;
+    float lit = lit_by_map(biased_es, texel, layer, to_light, footprint, pixel);
+    lit = faces_light(push.light, p_es, normal_ws) ? lit : 0.0;
     if (all(lessThan(pixel, push.size))) {
         imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));
     }

@@ -39,8 +39,11 @@ gpu::ComputePipelineInfo lookup_info(std::vector<std::uint32_t> constants) {
             .constants = std::move(constants)};
 }
 
-shared::MapLayerFrame layer_frame(const LightFit& fit) {
-    const glm::dmat4 rows = glm::transpose(glm::dmat4(fit.clip_from_world));
+/// For positions from `eye_ws`.
+shared::MapLayerFrame layer_frame(const LightFit& fit, Vec3 eye_ws) {
+    glm::dmat4 clip(fit.clip_from_world);
+    clip[3] = clip * glm::dvec4(DVec3(eye_ws), 1.0);
+    const glm::dmat4 rows = glm::transpose(clip);
     shared::MapLayerFrame layer{
         .u = 0.5 * (rows[0] + rows[3]), .v = 0.5 * (rows[1] + rows[3]), .z = rows[2], .w = rows[3]};
     layer.space = map_space(fit);
@@ -75,6 +78,7 @@ float filter_radius_texels(const ReadingOptions& reading) {
         case MapFilter::box_3x3:
             return 1.5f;
         case MapFilter::dithered_4:
+        case MapFilter::taps_16:
             return 2.5f;
         case MapFilter::disc:
             return static_cast<float>(reading.filter_radius) + kBilinear;
@@ -106,6 +110,8 @@ float deciding_reach_texels(const ReadingOptions& reading) {
             return diagonal * 0.75f * 1.5f;
         case MapFilter::box_4x4:
             return diagonal * 0.75f * 2.0f;
+        case MapFilter::taps_16:
+            return diagonal * 0.75f * 2.5f;
         case MapFilter::dithered_4:
             return diagonal * 0.8f * 2.5f;
         default:  // bilinear taps
@@ -127,7 +133,7 @@ std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws
     const std::span all(layers.layers);
     if (layers.choice == LayerChoice::by_axis) {
         const auto along = [&](const LookupLayer& layer) {
-            return (layer.fit.clip_from_world * Vec4(p_ws, 1.0f)).w;
+            return (layer.fit.clip_from_world * glm::dvec4(DVec3(p_ws), 1.0)).w;
         };
         return static_cast<std::size_t>(
             std::distance(all.begin(), std::ranges::max_element(all, {}, along)));
@@ -183,7 +189,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
                      .bleeding = static_cast<float>(reading_.light_bleeding)};
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        frame.layers[i] = layer_frame(layers[i].fit);
+        frame.layers[i] = layer_frame(layers[i].fit, receivers.camera.eye_ws());
         frame.layers[i].first_depth =
             i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m);
     }

@@ -13,7 +13,17 @@
 namespace gnomon {
 
 /// How texels are compared, in the order of kFilterNearest, ...: map_filter.glsl.
-enum class MapFilter { nearest, hardware_2x2, box_3x3, box_4x4, dithered_4, disc, footprint, pcss };
+enum class MapFilter {
+    nearest,
+    hardware_2x2,
+    box_3x3,
+    box_4x4,
+    dithered_4,
+    taps_16,
+    disc,
+    footprint,
+    pcss
+};
 
 /// How a map is read: compared through a filter, or, of contents that are blurred, once.
 struct ReadingOptions {

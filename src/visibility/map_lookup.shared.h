@@ -17,9 +17,10 @@ const uint kFilterHardware2x2 = 1u;
 const uint kFilterBox3x3 = 2u;
 const uint kFilterBox4x4 = 3u;
 const uint kFilterDithered4 = 4u;
-const uint kFilterDisc = 5u;
-const uint kFilterFootprint = 6u;
-const uint kFilterPcss = 7u;
+const uint kFilterTaps16 = 5u;
+const uint kFilterDisc = 6u;
+const uint kFilterFootprint = 7u;
+const uint kFilterPcss = 8u;
 
 const uint kContentDepth = 0u;
 const uint kContentDistance = 1u;

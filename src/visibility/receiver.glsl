@@ -12,20 +12,21 @@ layout(constant_id = 0) const uint kLightKind = kLightOfAnyKind;
 
 uint kind_of(LightShape light) { return kLightKind == kLightOfAnyKind ? light.kind : kLightKind; }
 
-vec3 receiver_position(mat4 world_from_clip, uvec2 pixel, uvec2 size, float depth) {
+// In the space that the matrix leads to; positions of lights are in the same.
+vec3 receiver_position(mat4 from_clip, uvec2 pixel, uvec2 size, float depth) {
     vec2 ndc = 2.0 * (vec2(pixel) + 0.5) / vec2(size) - 1.0;
-    vec4 p = world_from_clip * vec4(ndc, depth, 1.0);
+    vec4 p = from_clip * vec4(ndc, depth, 1.0);
     return p.xyz / p.w;
 }
 
 // Not normalised for lights at a finite distance.
-vec3 to_light_ws(LightShape light, vec3 p_ws) {
-    return kind_of(light) == kLightDirectional ? light.position : light.position - p_ws;
+vec3 to_light_ws(LightShape light, vec3 p) {
+    return kind_of(light) == kLightDirectional ? light.position : light.position - p;
 }
 
 // Does any part of the light lie above the receiver's plane, on the side to which it shines?
-bool faces_light(LightShape light, vec3 p_ws, vec3 normal_ws) {
-    vec3 to_center = to_light_ws(light, p_ws);
+bool faces_light(LightShape light, vec3 p, vec3 normal_ws) {
+    vec3 to_center = to_light_ws(light, p);
     float height = dot(normal_ws, to_center);
     bool shines_here = kind_of(light) < kLightDisc || dot(light.normal, to_center) < 0.0;
     switch (kind_of(light)) {

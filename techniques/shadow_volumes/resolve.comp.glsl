@@ -67,8 +67,8 @@ bool mended(ivec2 at, vec3 normal_ws) {
         if (i == 4 || outside) continue;
         float depth = texelFetch(depths, other, 0).x;
         vec3 other_normal = unpack_unit_vector(imageLoad(normals, other).x);
-        vec3 other_ws = receiver_position(push.world_from_clip, uvec2(other), push.size, depth);
-        if (depth == 0.0 || !faces_light(push.light, other_ws, other_normal)) continue;
+        vec3 other_es = receiver_position(push.es_from_clip, uvec2(other), push.size, depth);
+        if (depth == 0.0 || !faces_light(push.light, other_es, other_normal)) continue;
         int vote = enclosed(other) ? 1 : -1;
         bool same_surface = imageLoad(ids, other).x == instance &&
                             dot(normal_ws, other_normal) >= kMinNormalCosine;
@@ -86,11 +86,11 @@ void main() {
     float depth = texelFetch(depths, at, 0).x;
     float lit = 1.0;
     if (depth > 0.0) {
-        vec3 p_ws = receiver_position(push.world_from_clip, pixel, push.size, depth);
+        vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, depth);
         vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
         bool mend = kMendEdges != 0u && hangs_over(at);
         bool in_shadow = mend ? mended(at, normal_ws) : enclosed(at);
-        lit = faces_light(push.light, p_ws, normal_ws) && !in_shadow ? 1.0 : 0.0;
+        lit = faces_light(push.light, p_es, normal_ws) && !in_shadow ? 1.0 : 0.0;
     }
     imageStore(visibility, at, vec4(lit));
 }
