@@ -3,6 +3,8 @@
 
 #include "harness.h"
 
+#include <glm/ext/matrix_transform.hpp>
+
 #include <cmath>
 
 namespace gnomon {
@@ -136,6 +138,55 @@ TEST_F(DeliberateBugs, UnmendedEdgesAreTorn) {
     }
     EXPECT_EQ(mended_stray, 0.0);
     EXPECT_GT(torn_stray, 0.0);
+}
+
+/// How much visibility changes from frame to frame on a path of moves and turns of parts of a
+/// texel: the mean over pixels that are judged in both frames. Of the technique, and of the truth.
+std::pair<double, double> flicker(const Params& params) {
+    constexpr int kFrames = 48;
+    const auto technique = make_technique(context(), "pssm", params);
+    const Scene scene = make_builtin_scene("field-small");
+    Frame frame{.scene = scene,
+                .camera = scene.cameras().at(0),
+                .light = sun(radians(35.0f), radians(300.0f), 0.0f),
+                .size = {256, 144}};
+    const Mat4 view_from_world = frame.camera.view_from_world;
+    double changed = 0.0, truth_changed = 0.0;
+    std::size_t judged = 0;
+    Image before, truth_before, facing_before;
+    for (int i = 0; i < kFrames; ++i) {
+        const auto step = static_cast<float>(i);
+        frame.camera.view_from_world =
+            glm::rotate(glm::translate(view_from_world, Vec3(0.004f, 0.001f, 0.002f) * step),
+                        radians(0.02f) * std::sin(step), Vec3(0, 1, 0));
+        const Visibility visibility = technique->render(frame);
+        const Visibility truth = trace_visibility(context(), frame);
+        const Image facing = comparison_mask(context(), frame).facing;
+        for (std::size_t p = 0; i > 0 && p < facing.pixels().size(); ++p) {
+            if (facing.pixels()[p] == 0.0f || facing_before.pixels()[p] == 0.0f) continue;
+            ++judged;
+            changed += std::abs(visibility.image().pixels()[p] - before.pixels()[p]);
+            truth_changed += std::abs(truth.image().pixels()[p] - truth_before.pixels()[p]);
+        }
+        before = visibility.image();
+        truth_before = truth.image();
+        facing_before = facing;
+    }
+    const auto count = static_cast<double>(judged);
+    return {changed / count, truth_changed / count};
+}
+
+// Texels that stay where they are in the world leave the flicker that pixels have by themselves.
+TEST_F(DeliberateBugs, TexelsThatMoveFlicker) {
+    for (const int map_size : {1024, 2048}) {
+        SCOPED_TRACE(map_size);
+        const auto [snapped, truth] = flicker({{"fit", "stable"}, {"map_size", map_size}});
+        const auto [unsnapped, same] = flicker({{"fit", "tight"}, {"map_size", map_size}});
+        EXPECT_EQ(truth, same);
+        EXPECT_LT(snapped, 1.1 * truth);
+        // The finer the texels, the more of it is the pixels' own.
+        EXPECT_GT(unsnapped - snapped, (map_size == 1024 ? 0.2 : 0.05) * truth);
+    }
 }
 
 // Multiplying the whole picture by visibility takes the ambient light away with the sun's.

@@ -7,7 +7,7 @@
 #define GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
 
 // Moments are moved this far towards those of an even spread, lest rounding make them impossible.
-const float kMomentBias = 3e-6;
+const float kMomentBias = 1e-5;
 
 // exp(c d) of a distance from -1 to 1, over exp(c).
 float warped(float along, float exponent) { return exp(2.0 * exponent * (along - 1.0)); }

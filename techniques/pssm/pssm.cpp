@@ -8,6 +8,8 @@
 #include "technique/map_technique.h"
 #include "visibility/light_warp.h"
 
+#include <cmath>
+
 namespace gnomon {
 
 const TechniqueInfo& pssm_info();
@@ -40,6 +42,14 @@ const ParamTable<Options>& param_table() {
     return table;
 }
 
+/// A range that holds this one and stays the same while the camera moves a little: its ends are
+/// powers of 2 and three steps between them, lest splits and so texels change with each frame.
+DepthRange in_steps(DepthRange range) {
+    constexpr double kSteps = 4.0;
+    return {std::exp2(std::floor(kSteps * std::log2(range.near_m)) / kSteps),
+            std::exp2(std::ceil(kSteps * std::log2(range.far_m)) / kSteps)};
+}
+
 class ParallelSplits final : public MapTechnique {
 public:
     ParallelSplits(Context& context, const Options& options)
@@ -49,8 +59,9 @@ private:
     MapPlan plan(const Frame& frame, const Seen& seen) const override {
         MapPlan plan;
         if (seen.range.far_m > seen.range.near_m) {
+            const DepthRange view = options_.fit == Fit::stable ? in_steps(seen.range) : seen.range;
             const std::vector<double> distances_m = pssm::split_distances(
-                seen.range.near_m, seen.range.far_m, options_.splits, options_.split_lambda);
+                view.near_m, view.far_m, options_.splits, options_.split_lambda);
             for (std::size_t i = 0; i + 1 < distances_m.size(); ++i) {
                 const DepthRange range{distances_m[i], distances_m[i + 1]};
                 const std::vector<DVec3> receivers_ws =
