@@ -1,6 +1,6 @@
 // Scenes whose shadows are known on paper, crossed with every technique that claims the light.
 
-#include "harness.h"
+#include "subjects.h"
 
 #include <glm/matrix.hpp>
 
@@ -16,56 +16,9 @@ namespace gnomon {
 namespace {
 
 using test::context;
+using test::Subject;
 
 constexpr double kPiD = std::numbers::pi;
-
-bool casts(const TechniqueInfo& info) {
-    return info.name != "local_illumination";
-}
-
-/// A technique as a test's parameter, with what is not at its default.
-struct Subject {
-    std::string label;
-    std::string technique;
-    Params params;
-};
-
-/// For GoogleTest.
-std::ostream& operator<<(std::ostream& out, const Subject& subject) {
-    return out << subject.label;
-}
-
-/// Every technique that casts shadows, once for each choice of its choices.
-std::vector<Subject> casting_subjects() {
-    std::vector<Subject> subjects;
-    for (const TechniqueInfo& info : techniques()) {
-        if (!casts(info) || !supports(info.lights, DirectionalLight{})) continue;
-        const std::string name(info.name);
-        subjects.push_back({name, name, {}});
-        for (const ParamInfo& param : info.params()) {
-            for (const std::string& word : param.choices) {
-                subjects.push_back(
-                    {name + "_" + param.name + "_" + word, name, {{param.name, word}}});
-            }
-        }
-    }
-    return subjects;
-}
-
-/// The same, but the filters and contents that all maps share with only one of them.
-std::vector<Subject> subjects_apart() {
-    std::vector<Subject> subjects = casting_subjects();
-    std::erase_if(subjects, [](const Subject& subject) {
-        const bool shared = subject.label.find("_filter_") != std::string::npos ||
-                            subject.label.find("_content_") != std::string::npos;
-        return shared && subject.technique != "shadow_map";
-    });
-    return subjects;
-}
-
-std::string label(const testing::TestParamInfo<Subject>& test) {
-    return test.param.label;
-}
 
 /// Everything along one ray of the camera, in double, without the library's own arithmetic but its
 /// matrix.
@@ -180,11 +133,13 @@ protected:
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Techniques, ClosedForm, testing::ValuesIn(casting_subjects()), label);
+INSTANTIATE_TEST_SUITE_P(Techniques, ClosedForm, testing::ValuesIn(test::casting_subjects()),
+                         test::label);
 
-class Attached : public ClosedForm {};
+class ColumnShadow : public ClosedForm {};
 
-INSTANTIATE_TEST_SUITE_P(Techniques, Attached, testing::ValuesIn(subjects_apart()), label);
+INSTANTIATE_TEST_SUITE_P(Techniques, ColumnShadow, testing::ValuesIn(test::subjects_apart()),
+                         test::label);
 
 /// Known failure: a pixel at the foot of a lit wall of the cube, whose texel holds the ground, is
 /// taken for shadow. No technique's default filter has it.
@@ -207,7 +162,7 @@ TEST_P(ClosedForm, TheCubesShadowEndsWhereItMustFromAbove) {
     expect_cube(frame, render(frame));
 }
 
-TEST_P(Attached, AColumnsShadowIsAsLongAsTheSunIsLow) {
+TEST_P(ColumnShadow, AColumnsShadowIsAsLongAsTheSunIsLow) {
     if (GetParam().label.ends_with("content_exponential")) {
         GTEST_SKIP()
             << "exponential maps light what is near its caster: within 0.7 m in this scene";
@@ -247,81 +202,6 @@ TEST_P(Attached, AColumnsShadowIsAsLongAsTheSunIsLow) {
         const double from_first_px = (kMargin_m + length_m) / pixel_m - static_cast<float>(first);
         EXPECT_NEAR(shadow_px, from_first_px, tolerance_px);
     }
-}
-
-/// Where a sheet stands on the ground, across the sun, its shadow begins: how far from it, across
-/// the light and in texels, the farthest lit pixel is that lies in its shadow, over suns of all
-/// heights and sides. Texels are wider than pixels. `judged`: how many pixels were looked at.
-double widest_gap_texels(const Subject& subject, std::size_t& judged) {
-    constexpr double kHalf_m = 0.6, kHeight_m = 4.0, kView_m = 2.0;
-    constexpr Extent kSize{256, 256};
-    constexpr double kPixel_m = kView_m / kSize.height;
-    Params params = subject.params;
-    const TechniqueInfo& info = find_technique(subject.technique);
-    if (std::ranges::count(info.params(), "map_size", &ParamInfo::name) != 0)
-        params.set("map_size", 192);
-    const auto technique = make_technique(context(), subject.technique, params);
-    double widest = 0.0;
-    for (const double azimuth_deg : {30.0, 120.0, 210.0, 300.0}) {
-        const double azimuth = azimuth_deg * kPiD / 180.0;
-        const glm::dvec2 towards(std::sin(azimuth), -std::cos(azimuth));
-        const glm::dvec2 sideways(-towards.y, towards.x);
-        const Vec3 along(static_cast<float>(sideways.x), 0, static_cast<float>(sideways.y));
-        const auto half = static_cast<float>(kHalf_m);
-        const Scene scene = test::make_scene(
-            {test::ground(1.5f), test::quad(-half * along - Vec3(0, 0.05f, 0), 2.0f * half * along,
-                                            Vec3(0, static_cast<float>(kHeight_m) + 0.05f, 0))});
-        for (const double elevation_deg : {5.0, 15.0, 35.0, 60.0, 85.0}) {
-            const double elevation = elevation_deg * kPiD / 180.0;
-            const Frame frame{
-                .scene = scene,
-                .camera = test::top_view({0, 0, 0}, static_cast<float>(kView_m), 8.0f),
-                .light = sun(static_cast<float>(elevation), static_cast<float>(azimuth), 0.0f),
-                .size = kSize};
-            const Visibility visibility = technique->render(frame);
-            const Image& texel_m = visibility.texel_size_m();
-            for (unsigned y = 0; y < kSize.height; ++y) {
-                for (unsigned x = 0; x < kSize.width; ++x) {
-                    const glm::dvec2 p = kPixel_m * (glm::dvec2(x, y) + 0.5) - 0.5 * kView_m;
-                    const double texel = texel_m.empty() ? kPixel_m : texel_m.at(x, y);
-                    // Where texels explain what is lit, at the shadow's sides and its end.
-                    const double rim_m =
-                        (visibility.filter_radius_texels() + 1.5) * texel + kPixel_m;
-                    const double gap_m = -glm::dot(p, towards);
-                    const double end_m =
-                        (kHeight_m / std::tan(elevation)) - rim_m / std::sin(elevation);
-                    if (gap_m <= 0.0 || gap_m > end_m ||
-                        std::abs(glm::dot(p, sideways)) > kHalf_m - rim_m) {
-                        continue;
-                    }
-                    ++judged;
-                    if (visibility.image().at(x, y) <= 0.5f) continue;
-                    const double across_m = std::max(gap_m - kPixel_m, 0.0) * std::sin(elevation);
-                    widest = std::max(widest, across_m / texel);
-                }
-            }
-        }
-    }
-    return widest;
-}
-
-TEST_P(Attached, AShadowBeginsAtItsCaster) {
-    if (GetParam().label.ends_with("content_exponential")) {
-        GTEST_SKIP() << "exponential maps light what is near its caster";
-    }
-    constexpr double kMostTexels = 1.5;
-    std::size_t judged = 0;
-    const double widest_texels = widest_gap_texels(GetParam(), judged);
-    EXPECT_LE(widest_texels, kMostTexels);
-    RecordProperty("widest_texels", std::to_string(widest_texels));
-    EXPECT_GT(judged, 5000u);
-}
-
-class TooMuchBias : public test::DeviceTest {};
-
-TEST_F(TooMuchBias, DetachesShadows) {
-    std::size_t judged = 0;
-    EXPECT_GT(widest_gap_texels({"", "shadow_map", {{"bias_constant", 6.0}}}, judged), 3.0);
 }
 
 // Penumbras. A half-plane x < 0 at y = kEdge_m hides a light from a ground at y = 0. Lights at a

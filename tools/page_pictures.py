@@ -110,7 +110,8 @@ def main():
                 continue
             panels = []
             for command in commands:
-                gnomon("render", *command.split(), "-o", frame, "--size", size)
+                truth = [] if "--technique" in command else ["--samples", "256"]
+                gnomon("render", *command.split(), *truth, "-o", frame, "--size", size)
                 panels.append(cropped(frame, crop))
             save(name, panels, columns)
         if "compare" not in wanted:

@@ -33,7 +33,19 @@ struct CompareFlags {
     CompareOptions options;
     std::string output;
     std::string techniques = "all";
+    bool explain = false;
 };
+
+/// What the reader must know of each result, and why `auto` chose what it did.
+std::string explanation(const ComparisonReport& report) {
+    std::string text;
+    for (const TechniqueResult& result : report.results) {
+        const std::string& note = result.note;
+        text += fmt::format("{} on {}: {}\n", result.technique, result.light,
+                            note.empty() ? "as its parameters say" : note);
+    }
+    return text;
+}
 
 void run_compare(const CompareFlags& flags, const Session& session, ConsoleProgress& progress) {
     require_scene("compare", flags.view);
@@ -54,6 +66,7 @@ void run_compare(const CompareFlags& flags, const Session& session, ConsoleProgr
     write_report(flags.output, report, progress);
     progress.clear();
     print(table(report));
+    if (flags.explain) print(explanation(report));
     check_validation(context);
     print(
         fmt::format("report: {}\n", (std::filesystem::path(flags.output) / "index.html").string()));
@@ -71,6 +84,7 @@ Command add_compare(CLI::App& program) {
         ->type_name("DIR");
     app->add_option("--techniques", flags->techniques, "which to compare (default all)")
         ->type_name("A,B|all");
+    app->add_flag("--explain", flags->explain, "say what each technique chose by itself, and why");
     add_integer(*app, "--reference-samples", flags->options.reference_samples,
                 {1, kMaxSamples, "rays"}, "rays per pixel and light of the truth (default 256)");
     app->add_option_function<std::string>(

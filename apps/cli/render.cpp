@@ -20,10 +20,10 @@ constexpr const char* kExamples = R"(Examples:
       --camera eye=8,5,8,target=0,1,0,fov=45 --light sun:elevation=35,azimuth=120
   gnomon render torches -o frame.png --lights 0,3 --visibility visibility.exr
 
-Without --technique the picture shows the ray-traced truth. Every parameter of a technique is a
-flag; gnomon info lists them.)";
+Without --technique one is chosen for the device, the light and the view (auto); with --samples the
+picture shows the ray-traced truth. Every parameter of a technique is a flag; gnomon info lists
+them.)";
 
-constexpr int kDefaultSamples = 256;
 constexpr int kMaxSamples = 65536;  // TraceOptions::samples
 
 struct RenderFlags {
@@ -53,18 +53,18 @@ void check_flags(const RenderFlags& flags) {
     }
 }
 
-/// The technique of --technique; without it none, and parameters have nothing to set.
+/// The technique of --technique, or auto; for the truth none.
 std::vector<TechniqueChoice> choose_technique(const RenderFlags& flags, const Session& session) {
-    if (!flags.technique.empty()) {
-        find_technique(flags.technique);  // one, not a list or "all"
-        return choose_techniques(flags.technique, session);
+    const std::string name = flags.technique.empty() ? "auto" : flags.technique;
+    find_technique(name);  // one, not a list or "all"
+    const bool is_truth = flags.samples != 0;
+    for (const ParamFlag& flag : session.param_flags) {
+        if (flags.technique.empty() && (is_truth || flag.technique != name)) {
+            fail_usage("{}: needs --technique {}; without it {} is rendered", flag.written,
+                       flag.technique, is_truth ? "the ray-traced truth" : "what auto chooses");
+        }
     }
-    if (!session.param_flags.empty()) {
-        const ParamFlag& flag = session.param_flags.front();
-        fail_usage("{}: needs --technique {}; without it the ray-traced truth is rendered",
-                   flag.written, flag.technique);
-    }
-    return {};
+    return is_truth ? std::vector<TechniqueChoice>() : choose_techniques(name, session);
 }
 
 std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::vector<Light>& lights,
@@ -100,9 +100,8 @@ void run_render(const RenderFlags& flags, const Session& session, ConsoleProgres
     const std::vector<Light> lights = choose_lights(frame.scene, flags.view, session);
 
     Context context(context_options(session));
-    const int samples = flags.samples == 0 ? kDefaultSamples : flags.samples;
     const std::vector<Visibility> visibilities =
-        see_lights(context, frame, lights, choice, samples, progress);
+        see_lights(context, frame, lights, choice, flags.samples, progress);
     std::vector<LitBy> lit_by;
     for (std::size_t i = 0; i < lights.size(); ++i)
         lit_by.push_back({lights[i], &visibilities[i]});
@@ -133,11 +132,11 @@ Command add_render(CLI::App& program) {
                     "V.0.exr, V.1.exr")
         ->type_name("V.exr");
     app->add_option("--technique", flags->technique,
-                    "how to find the shadows (default: by tracing rays, the truth)")
+                    "how to find the shadows (default auto, which chooses one)")
         ->type_name("NAME");
     add_integer(*app, "--samples", flags->samples, {1, kMaxSamples, "rays"},
-                "rays per pixel and light of the truth (default 256; one if the light has no "
-                "extent)");
+                "render the ray-traced truth, with so many rays per pixel and light (one if the "
+                "light has no extent)");
     add_view(*app, flags->view);
     add_lighting(*app, flags->lighting);
     return {app,

@@ -67,6 +67,7 @@ struct RenderStats {
     double gpu_ms = 0.0;             ///< sum of the passes
     std::vector<PassTime> passes;    ///< device time each, in order
     std::uint64_t memory_bytes = 0;  ///< held by the technique, the scene's own buffers left out
+    std::string note;                ///< what the technique chose by itself and why; often nothing
 };
 
 /// One way to answer: how much of this light does each receiver see?
@@ -123,8 +124,9 @@ std::span<const TechniqueInfo> techniques();
 /// Throws Error{input} that suggests the nearest name when there is none.
 const TechniqueInfo& find_technique(std::string_view name);
 
-/// Throws Error{input} for an unknown technique or parameter and for a value out of range.
-std::unique_ptr<Technique> make_technique(Context& context, std::string_view name,
+/// Without a name the one that chooses by device, light and view. Throws Error{input} for an
+/// unknown technique or parameter and for a value out of range.
+std::unique_ptr<Technique> make_technique(Context& context, std::string_view name = "auto",
                                           const Params& params = {});
 
 }  // namespace gnomon

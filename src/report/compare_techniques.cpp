@@ -126,6 +126,8 @@ void run_technique(Context& context, const TechniqueChoice& choice, std::span<co
             result.prepare_ms = prepare_ms;
             judge(context, report.options, cases[i], report.truths[i], *technique, progress,
                   result);
+            const std::string chosen = technique->last_render().note;
+            if (!chosen.empty()) result.note += (result.note.empty() ? "" : " ") + chosen;
         }
         report.results.push_back(std::move(result));
     }
