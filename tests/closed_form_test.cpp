@@ -145,7 +145,8 @@ INSTANTIATE_TEST_SUITE_P(Techniques, ColumnShadow, testing::ValuesIn(test::subje
 /// taken for shadow. No technique's default filter has it.
 std::size_t crease_pixels(const std::string& label) {
     if (label == "pssm_filter_nearest" || label == "lispsm_filter_dithered_4" ||
-        label == "psm_filter_dithered_4") {
+        label == "psm_filter_dithered_4" || label == "object_id" ||
+        label == "object_id_compare_ids_and_depths") {
         return 1;
     }
     return label == "tsm_filter_dithered_4" ? 2 : 0;

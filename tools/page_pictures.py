@@ -47,6 +47,10 @@ PICTURES = {
     "shadow_map-contents": ("1280x720", (820, 340, 1120, 490), 2, [
         LOW] + [f"{LOW} {MAP} --shadow_map.light_bleeding 0 --shadow_map.blur 6 --shadow_map.content {content}"
                 for content in ("variance", "exponential_variance", "moments")]),
+    "object_id": ("1280x720", (470, 330, 710, 450), 3, ["field-small"] + [
+        f"field-small --technique object_id --object_id.map_size 1024 --object_id.compare {compare}"
+        for compare in ("ids", "ids_and_depths")]),
+    "object_id-fails": ("1280x720", (480, 120, 960, 420), 2, ["courtyard", "courtyard --technique object_id"]),
     "omni": ("1280x720", (640, 420, 960, 600), 3, [
         "torches", "torches --technique omni", "torches --technique omni --omni.projection tetrahedral"]),
     "psm-suns": ("1280x720", (470, 300, 710, 440), 4, [

@@ -115,6 +115,7 @@ Json technique_json(const TechniqueInfo& info) {
             {"lights", light_kind_names(info.lights)},
             {"penumbra", penumbra_name(info.penumbra)},
             {"honors_alpha", info.honors_alpha},
+            {"self_shadows", info.self_shadows},
             {"parameters", std::move(params)}};
 }
 

@@ -114,6 +114,7 @@ struct TechniqueInfo {
     LightKinds lights = LightKinds::none;  ///< the lights it can shadow; others throw
     Penumbra penumbra = Penumbra::none;
     bool honors_alpha = true;  ///< false: alpha masks count as solid
+    bool self_shadows = true;  ///< false: no instance casts shadows on itself
     const std::vector<ParamInfo>& (*params)() = nullptr;
     std::unique_ptr<Technique> (*make)(Context&, const Params&) = nullptr;
 };

@@ -47,9 +47,8 @@ gpu::Pipeline normal_pipeline(const gpu::Device& device) {
                                                     sizeof(shared::NormalPush)}});
 }
 
-void allocate(const gpu::Device& device, Extent size, Receivers& out) {
-    if (out.depth && out.size == size) return;
-    out.size = size;
+void allocate(const gpu::Device& device, Extent size, SeenIds& out) {
+    if (out.depth && out.depth.size() == size) return;
     out.depth =
         gpu::Image(device, {.size = size,
                             .format = kDepthFormat,
@@ -60,10 +59,6 @@ void allocate(const gpu::Device& device, Extent size, Receivers& out) {
                             .format = kIdFormat,
                             .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    out.normals =
-        gpu::Image(device, {.size = size,
-                            .format = kNormalFormat,
-                            .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
 }
 
 shared::NormalPush normal_push(const Camera& camera, Extent size) {
@@ -88,17 +83,14 @@ Mat4 Receivers::eye_from_clip() const {
     return Mat4(glm::inverse(glm::dmat4(camera.clip_from_view(size)) * view));
 }
 
-ReceiverPass::ReceiverPass(const gpu::Device& device)
+IdPass::IdPass(const gpu::Device& device)
     : device_(device),
       opaque_(receiver_pipeline(device, false)),
-      masked_(receiver_pipeline(device, true)),
-      normal_(normal_pipeline(device)) {}
+      masked_(receiver_pipeline(device, true)) {}
 
-void ReceiverPass::record(gpu::Commands& commands, const GpuScene& scene, const Camera& camera,
-                          Extent size, bool ignore_alpha, Receivers& out) {
-    const gpu::Pass pass(commands, "receivers");
+void IdPass::record(gpu::Commands& commands, const GpuScene& scene, const Mat4& clip_from_world,
+                    Extent size, bool ignore_alpha, bool hide_backs, SeenIds& out) {
     allocate(device_, size, out);
-    out.camera = camera;
     commands.use(out.depth, gpu::Use::depth_target);
     commands.use(out.ids, gpu::Use::color_target);
     commands.begin_drawing({.colors = {&out.ids},
@@ -106,9 +98,26 @@ void ReceiverPass::record(gpu::Commands& commands, const GpuScene& scene, const 
                             .size = size,
                             .clear_stencil = true,
                             .clear_value = {.uint32 = {kNoReceiver, 0, 0, 0}}});
-    draw_scene(commands, scene, {.opaque = &opaque_, .masked = &masked_, .hide_backs = true},
-               camera.clip_from_world(size), ignore_alpha);
+    draw_scene(commands, scene, {.opaque = &opaque_, .masked = &masked_, .hide_backs = hide_backs},
+               clip_from_world, ignore_alpha);
     commands.end_drawing();
+}
+
+ReceiverPass::ReceiverPass(const gpu::Device& device)
+    : device_(device), ids_(device), normal_(normal_pipeline(device)) {}
+
+void ReceiverPass::record(gpu::Commands& commands, const GpuScene& scene, const Camera& camera,
+                          Extent size, bool ignore_alpha, Receivers& out) {
+    const gpu::Pass pass(commands, "receivers");
+    if (!out.normals || out.size != size) {
+        out.normals = gpu::Image(
+            device_, {.size = size,
+                      .format = kNormalFormat,
+                      .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    }
+    out.size = size;
+    out.camera = camera;
+    ids_.record(commands, scene, camera.clip_from_world(size), size, ignore_alpha, true, out);
 
     commands.use(out.ids, gpu::Use::storage_read);
     commands.use(out.normals, gpu::Use::storage_write);

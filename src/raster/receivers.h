@@ -10,12 +10,16 @@ namespace gnomon::raster {
 /// In `Receivers::ids`: nothing is seen at this pixel.
 inline constexpr std::uint32_t kNoReceiver = 0xffffffffu;
 
-/// What the camera sees, in device memory.
-struct Receivers {
+/// What is seen from somewhere, in device memory.
+struct SeenIds {
+    gpu::Image depth;  ///< D32S8, reversed Z, 0 = nothing; the stencil is for anyone to use
+    gpu::Image ids;    ///< RG32UI: index into Scene::instances(), triangle of its mesh
+};
+
+/// What the camera sees.
+struct Receivers : SeenIds {
     Extent size;
     Camera camera;
-    gpu::Image depth;    ///< D32S8, reversed Z, 0 = nothing; the stencil is for anyone to use
-    gpu::Image ids;      ///< RG32UI: index into Scene::instances(), triangle of its mesh
     gpu::Image normals;  ///< R32UI: geometric normal towards the viewer, octahedral
 
     /// From pixel (x, y, depth) in NDC to the world, of the camera that was drawn.
@@ -30,6 +34,21 @@ struct Surfaces {
     gpu::Image normal_gloss;  ///< RGBA16F: shading normal in the world, or zero; shininess
 };
 
+/// Draws depth and ids.
+class IdPass {
+public:
+    explicit IdPass(const gpu::Device& device);
+
+    /// Allocates `out` when its size is another one; it is in use as targets afterwards. The
+    /// stencil is cleared. `hide_backs`: of single-sided materials.
+    void record(gpu::Commands& commands, const GpuScene& scene, const Mat4& clip_from_world,
+                Extent size, bool ignore_alpha, bool hide_backs, SeenIds& out);
+
+private:
+    const gpu::Device& device_;
+    gpu::Pipeline opaque_, masked_;
+};
+
 /// Draws receivers: their depth, ids and normals.
 class ReceiverPass {
 public:
@@ -41,7 +60,8 @@ public:
 
 private:
     const gpu::Device& device_;
-    gpu::Pipeline opaque_, masked_, normal_;
+    IdPass ids_;
+    gpu::Pipeline normal_;
 };
 
 /// Draws the looks of the surfaces that a ReceiverPass found.

@@ -66,6 +66,10 @@ std::string supported_note(const TechniqueInfo& info, const Frame& frame) {
     if (masked && !frame.ignore_alpha && !info.honors_alpha) {
         note = "Alpha masks count as solid here but not in the truth.";
     }
+    if (!info.self_shadows) {
+        note += note.empty() ? "" : " ";
+        note += "No object casts a shadow on itself here, as in the truth they do.";
+    }
     if (has_extent(frame.light) && info.penumbra == Penumbra::none) {
         note += note.empty() ? "" : " ";
         note += "Shadows are hard; the light has an extent, so the truth has penumbrae.";
