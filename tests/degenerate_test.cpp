@@ -105,7 +105,9 @@ protected:
         const Visibility truth = trace_visibility(context(), frame);
         const Comparison error = compared(frame, truth);
         // Of shadows that an object casts on itself some techniques say that they make none.
-        if (info().self_shadows) EXPECT_LE(error.artefact_lit, edge_share());
+        if (info().self_shadows) {
+            EXPECT_LE(error.artefact_lit, edge_share());
+        }
         EXPECT_LE(error.artefact_shadow, edge_share());
         if (!visibility_.texel_size_m().empty()) return;
         const ComparisonMask mask = comparison_mask(context(), frame);
