@@ -1,5 +1,5 @@
 // What the biases that nobody set do: artefacts of every technique with a depth map, at its
-// defaults, with every filter, over suns and scenes.
+// defaults, with every filter and every content, over suns and scenes.
 //
 //     bias_sweep [TECHNIQUE [SCENE...]]
 //
@@ -43,7 +43,7 @@ struct Worst {
 };
 
 struct Contestant {
-    std::string technique, filter;
+    std::string technique, reading;  ///< filter or content
     int map_size = 0;
     std::unique_ptr<Technique> made;
     std::array<Worst, std::size(kElevations_deg)> lit, shadow;  ///< by elevation
@@ -60,17 +60,22 @@ std::vector<Contestant> contestants(Context& context, const std::string& only) {
         const bool has_map =
             std::ranges::find(params, "map_size", &ParamInfo::name) != params.end();
         if (filter == params.end() || !has_map) continue;
-        for (const std::string& word : filter->choices) {
+        const auto add = [&](const std::string& param, const std::string& word) {
             for (const int map_size : kMapSizes) {
                 Contestant contestant;
                 contestant.technique = info.name;
-                contestant.filter = word;
+                contestant.reading = word;
                 contestant.map_size = map_size;
                 contestant.made =
-                    make_technique(context, info.name, {{"filter", word}, {"map_size", map_size}});
+                    make_technique(context, info.name, {{param, word}, {"map_size", map_size}});
                 result.push_back(std::move(contestant));
             }
-        }
+        };
+        for (const std::string& word : filter->choices)
+            add("filter", word);
+        const auto content = std::ranges::find(params, "content", &ParamInfo::name);
+        for (std::size_t i = 1; content != params.end() && i < content->choices.size(); ++i)
+            add("content", content->choices[i]);
     }
     return result;
 }
@@ -125,7 +130,7 @@ int run(int argc, char** argv) {
         }
     }
     for (const Contestant& c : all) {
-        fmt::print("{:10} {:12} {:4} RMSE {:.4f}  lit", c.technique, c.filter, c.map_size,
+        fmt::print("{:10} {:20} {:4} RMSE {:.4f}  lit", c.technique, c.reading, c.map_size,
                    c.rmse / c.runs);
         print_worst(c.lit);
         fmt::print("  shadow");

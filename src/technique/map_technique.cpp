@@ -60,7 +60,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     bool is_drawn = false;
     const Seen seen = seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
     const MapPlan planned = plan(input.frame, seen);
-    layers_ = {.choice = planned.choice};
+    layers_ = {.choice = planned.choice, .layers = {}, .blend = planned.blend};
     for (const PlannedLayer& layer : planned.layers) {
         drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume(),
                          static_cast<float>(options_.caster_error),

@@ -91,6 +91,7 @@ struct PlannedLayer {
 struct MapPlan {
     LayerChoice choice = LayerChoice::by_distance;
     std::vector<PlannedLayer> layers;  ///< by distance: in its order
+    double blend = 0.0;                ///< LookupLayers::blend; layers begin so much earlier
 };
 
 /// A technique with a depth map: says where its texels go. Everything else is alike for all.

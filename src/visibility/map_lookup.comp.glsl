@@ -39,12 +39,13 @@ struct Layer {
 
 // The last layer that begins before the receiver, or the one along whose axis it is farthest. All are read
 // and one is chosen, number by number: an index that differs between pixels would be followed pixel by pixel.
-Layer layer_of(float depth, vec3 p_es) {
+Layer layer_of(float depth, vec3 p_es, float noise) {
     Layer layer = Layer(frame.layers[0], 0.0);
+    float blended_depth = depth * (1.0 - frame.blend * noise);  // as if up to so much farther away
     for (uint i = 1u; i < kLayerCount; ++i) {
         MapLayerFrame next = frame.layers[i];
         bool chosen = kLayerChoice == kChooseByDistance
-                          ? depth < next.first_depth
+                          ? blended_depth < next.first_depth
                           : dot(next.w, vec4(p_es, 1.0)) > dot(layer.map.w, vec4(p_es, 1.0));
         layer.map.u = mix(layer.map.u, next.u, bvec4(chosen));
         layer.map.v = mix(layer.map.v, next.v, bvec4(chosen));
@@ -174,7 +175,7 @@ void main() {
     vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, max(depth, kLeastDepth));
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
     vec3 to_light = normalize(to_light_ws(push.light, p_es));
-    Layer layer = layer_of(depth, p_es);
+    Layer layer = layer_of(depth, p_es, gradient_noise(pixel));
     TexelAt texel = kAffine != 0u
                         ? affine_texel(layer.map, frame.size_texels, normal_ws, to_light)
                         : projective_texel(layer.map, frame.size_texels, p_es, normal_ws);

@@ -188,6 +188,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
                      .least_variance = kLeastDeviation * kLeastDeviation,
                      .bleeding = static_cast<float>(reading_.light_bleeding)};
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
+    frame.blend = static_cast<float>(lookup_layers.blend);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         frame.layers[i] = layer_frame(layers[i].fit, receivers.camera.eye_ws());
         frame.layers[i].first_depth =

@@ -74,6 +74,9 @@ struct LookupLayer {
 struct LookupLayers {
     LayerChoice choice = LayerChoice::by_distance;
     std::vector<LookupLayer> layers;  ///< between one and kMaxMapLayers, in the order of distance
+    /// By distance: of that at which a layer begins, over how much before it pixels mix with it,
+    /// some looking in it and some in the one before.
+    double blend = 0.0;
 };
 
 /// The number in the picture's depth buffer at a distance along the camera's axis.

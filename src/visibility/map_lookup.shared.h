@@ -77,6 +77,7 @@ struct MapFrame {
     MapBias bias;
     MapReadingFrame reading;
     float size_texels;
+    float blend;  // LookupLayers::blend
 };
 
 struct MapContentPush {

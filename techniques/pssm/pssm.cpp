@@ -22,6 +22,7 @@ struct Options : MapOptions {
     Options() { filter = MapFilter::box_3x3; }
     int splits = 4;
     double split_lambda = 0.8;
+    double split_blend = 0.0;
     Fit fit = Fit::tight;
     Warp warp = Warp::none;
 };
@@ -33,6 +34,9 @@ const ParamTable<Options>& param_table() {
                  "pieces that the view is cut into"),
          number("split_lambda", &Options::split_lambda, 0.0, 1.0, "1",
                 "0: pieces of equal length; 1: each longer than the one before by one factor"),
+         number("split_blend", &Options::split_blend, 0.0, 0.5, "1",
+                "of the distance at which a split begins, over how much before it pixels mix with "
+                "it by turns"),
          choice("fit", &Options::fit, {"tight", "stable"},
                 "tight: the smallest map around what is seen; stable: edges do not crawl when the "
                 "camera moves"),
@@ -58,16 +62,19 @@ public:
 private:
     MapPlan plan(const Frame& frame, const Seen& seen) const override {
         MapPlan plan;
+        // In a parallel view depths are no inverses of distances, by which the look-up mixes.
+        if (frame.camera.ortho_height_m == 0.0f) plan.blend = options_.split_blend;
         if (seen.range.far_m > seen.range.near_m) {
             const DepthRange view = options_.fit == Fit::stable ? in_steps(seen.range) : seen.range;
             const std::vector<double> distances_m = pssm::split_distances(
                 view.near_m, view.far_m, options_.splits, options_.split_lambda);
             for (std::size_t i = 0; i + 1 < distances_m.size(); ++i) {
-                const DepthRange range{distances_m[i], distances_m[i + 1]};
+                const DepthRange range{distances_m[i] * (1.0 - plan.blend), distances_m[i + 1]};
                 const std::vector<DVec3> receivers_ws =
                     visible_corners(frame.camera, frame.size, seen.bounds, range);
-                if (!receivers_ws.empty())
-                    plan.layers.push_back(split(frame, seen, range, receivers_ws));
+                if (receivers_ws.empty()) continue;
+                plan.layers.push_back(split(frame, seen, range, receivers_ws));
+                plan.layers.back().lookup.from_m = distances_m[i];
             }
         }
         if (plan.layers.empty()) plan.layers.push_back(split(frame, seen, {}, {}));  // none is seen

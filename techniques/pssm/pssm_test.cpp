@@ -81,6 +81,20 @@ TEST_F(MapTechniqueTest, ReusedMapsAreThoseThatWouldBeDrawn) {
     expect_same("masks taken for solid");
 }
 
+TEST_F(MapTechniqueTest, BlendedSplitsHideTheirSeams) {
+    const Frame frame = frame_of("field-large");
+    const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
+    const ComparisonMask mask = comparison_mask(context(), frame);
+    const Visibility cut = make_technique(context(), "pssm")->render(frame);
+    const Visibility blended =
+        make_technique(context(), "pssm", {{"split_blend", 0.2}})->render(frame);
+    EXPECT_FALSE(std::ranges::equal(cut.image().pixels(), blended.image().pixels()));
+    // A part of the nearer pixels has the farther split's texels.
+    EXPECT_LT(compare(blended, truth, mask).rmse, 1.15 * compare(cut, truth, mask).rmse);
+    EXPECT_LT(compare(blended, truth, mask).artefact_lit, 5e-4);
+    EXPECT_LT(compare(blended, truth, mask).artefact_shadow, 5e-4);
+}
+
 TEST_F(MapTechniqueTest, MoreSplitsErrLess) {
     const Frame frame = frame_of("field-small");
     const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
