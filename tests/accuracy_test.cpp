@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 namespace gnomon::test {
 namespace {
@@ -130,6 +132,41 @@ TEST_P(BuiltinScene, SplitsHaveNoArtefactsUnderOtherSuns) {
         EXPECT_LE(judged.error.artefact_lit, 0.001) << elevation_deg;
         EXPECT_GT(judged.error.rmse, 0.0) << elevation_deg;
         if (HasFailure()) leave_picture(judged, fmt::format("pssm_{}", GetParam()));
+    }
+}
+
+// Lamps: a cube, a tetrahedron, and perspective cubes.
+TEST_P(BuiltinScene, MapsOfLampsHaveNoArtefacts) {
+    const Scene scene = make_builtin_scene(GetParam());
+    if (!std::holds_alternative<PointLight>(scene.lights().at(0))) {
+        GTEST_SKIP() << GetParam() << " has no lamp first";
+    }
+    for (const auto& [technique, params] : std::vector<std::pair<std::string, Params>>{
+             {"omni", {}}, {"omni", {{"projection", "tetrahedral"}}}, {"psm", {}}}) {
+        const Judged judged =
+            judge(builtin_frame(scene, scene.lights()[0], false), technique, params);
+        EXPECT_LE(judged.error.artefact_shadow, 0.0003) << technique;
+        EXPECT_LE(judged.error.artefact_lit, 0.001) << technique;
+        EXPECT_GT(judged.error.rmse, 0.0) << technique;
+        if (HasFailure()) leave_picture(judged, fmt::format("{}_{}", technique, GetParam()));
+    }
+}
+
+// What is blurred may bleed light, so much and no more.
+TEST_P(BuiltinScene, BlurredMapsBleedLittleLight) {
+    const Scene scene = make_builtin_scene(GetParam());
+    if (!std::holds_alternative<DirectionalLight>(scene.lights().at(0))) {
+        GTEST_SKIP() << GetParam() << " has no sun";
+    }
+    for (const auto& [content, most_lit] : {std::pair{"variance", 0.001},
+                                            {"exponential_variance", 0.0005},
+                                            {"moments", 0.0005},
+                                            {"exponential", 0.005}}) {
+        const Judged judged = judge(builtin_frame(scene, scene.lights()[0], false), "shadow_map",
+                                    {{"content", std::string(content)}});
+        EXPECT_LE(judged.error.artefact_shadow, 0.0005) << content;
+        EXPECT_LE(judged.error.artefact_lit, most_lit) << content;
+        if (HasFailure()) leave_picture(judged, fmt::format("{}_{}", content, GetParam()));
     }
 }
 
