@@ -136,9 +136,9 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Techniques, ClosedForm, testing::ValuesIn(test::casting_subjects()),
                          test::label);
 
-class ColumnShadow : public ClosedForm {};
+class ClosedFormApart : public ClosedForm {};
 
-INSTANTIATE_TEST_SUITE_P(Techniques, ColumnShadow, testing::ValuesIn(test::subjects_apart()),
+INSTANTIATE_TEST_SUITE_P(Techniques, ClosedFormApart, testing::ValuesIn(test::subjects_apart()),
                          test::label);
 
 /// Known failure: a pixel at the foot of a lit wall of the cube, whose texel holds the ground, is
@@ -157,13 +157,13 @@ TEST_P(ClosedForm, TheCubesShadowEndsWhereItMust) {
     expect_cube(frame, render(frame), crease_pixels(GetParam().label));
 }
 
-TEST_P(ClosedForm, TheCubesShadowEndsWhereItMustFromAbove) {
+TEST_P(ClosedFormApart, TheCubesShadowEndsWhereItMustFromAbove) {
     Frame frame = cube_frame();
     frame.camera = test::top_view({-0.3f, 0, 0.2f}, 2.6f, 5.0f);
     expect_cube(frame, render(frame));
 }
 
-TEST_P(ColumnShadow, AColumnsShadowIsAsLongAsTheSunIsLow) {
+TEST_P(ClosedFormApart, AColumnsShadowIsAsLongAsTheSunIsLow) {
     if (GetParam().label.ends_with("content_exponential")) {
         GTEST_SKIP()
             << "exponential maps light what is near its caster: within 0.7 m in this scene";
