@@ -136,8 +136,8 @@ float lit_taps_16(sampler2DArray map, float size, MapBias bias, MapPoint point) 
     return lit / 16.0;
 }
 
-// Of a pixel, in [0, 1): neighbours differ as much as they can. J. Jimenez, "Next Generation Post Processing in
-// Call of Duty: Advanced Warfare", SIGGRAPH 2014 courses.
+// Of a pixel, in [0, 1): neighbours differ as much as they can. J. Jimenez, "Next Generation Post
+// Processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014 courses.
 float gradient_noise(uvec2 pixel) {
     return fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
 }
@@ -151,8 +151,8 @@ vec2 disc_sample(uint i, float turn) {
     return sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(angle), sin(angle));
 }
 
-// Evenly over the square from -0.5 to 0.5, moved by a part of its side: the additive recurrence of the plastic
-// number.
+// Evenly over the square from -0.5 to 0.5, moved by a part of its side: the additive recurrence of the
+// plastic number.
 vec2 square_sample(uint i, float shift) {
     return fract(float(i) * vec2(0.75487767, 0.56984029) + vec2(shift, fract(7.0 * shift))) - 0.5;
 }

@@ -67,9 +67,11 @@ float lit_by_blurred(MapPoint point) {
     ivec2 i = ivec2(corner);
     ivec2 j = min(i + 1, int(frame.size_texels) - 1);
     int layer = int(point.layer);
-    vec4 content = mix(mix(texelFetch(map, ivec3(i, layer), 0), texelFetch(map, ivec3(j.x, i.y, layer), 0), f.x),
-                       mix(texelFetch(map, ivec3(i.x, j.y, layer), 0), texelFetch(map, ivec3(j, layer), 0), f.x),
-                       f.y);
+    vec4 row0 = mix(texelFetch(map, ivec3(i, layer), 0),
+                    texelFetch(map, ivec3(j.x, i.y, layer), 0), f.x);
+    vec4 row1 = mix(texelFetch(map, ivec3(i.x, j.y, layer), 0),
+                    texelFetch(map, ivec3(j, layer), 0), f.x);
+    vec4 content = mix(row0, row1, f.y);
     float along = distance_along(point.space, clamp(point.depth, 0.0, kNearest));
     MapReadingFrame reading = frame.reading;
     float lit = 1.0;
@@ -91,7 +93,8 @@ float lit_by_blurred(MapPoint point) {
 
 // Texels of the map that the light, seen from the receiver, covers for each metre across it.
 mat2 texels_across_light(TexelAt texel, vec3 to_light) {
-    vec3 across = normalize(cross(to_light, abs(to_light.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+    vec3 aside = abs(to_light.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 across = normalize(cross(to_light, aside));
     vec3 other = cross(to_light, across);
     return mat2(dot(texel.u, across), dot(texel.v, across), dot(texel.u, other), dot(texel.v, other));
 }
@@ -104,8 +107,10 @@ float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn) {
     bool at_infinity = kLightKind == kLightDirectional;
     float search_m = at_infinity ? push.light.radius * (1.0 - point.depth) / depth_per_m : most_m;
     mat2 texels = texels_across_light(texel, to_light);
-    float blocker = blocker_depth(map, frame.size_texels, point, clamp(search_m, least_m, most_m) * texels, turn);
-    float behind = at_infinity ? (blocker - point.depth) / depth_per_m : blocker / max(point.depth, 1e-20) - 1.0;
+    float blocker = blocker_depth(map, frame.size_texels, point,
+                                  clamp(search_m, least_m, most_m) * texels, turn);
+    float behind = at_infinity ? (blocker - point.depth) / depth_per_m
+                               : blocker / max(point.depth, 1e-20) - 1.0;
     float penumbra_m = clamp(push.light.radius * behind, least_m, most_m);
     float lit = lit_disc(map, frame.size_texels, frame.bias, point, penumbra_m * texels, turn);
     return blocker > 0.0 ? lit : 1.0;
@@ -144,7 +149,8 @@ vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float d
     vec3 along = far - near;
     float slope = dot(normal_ws, along);
     float least = 1e-3 * length(along);
-    vec3 hit = far + along * dot(normal_ws, p_es - far) / (slope < 0.0 ? min(slope, -least) : max(slope, least));
+    slope = slope < 0.0 ? min(slope, -least) : max(slope, least);
+    vec3 hit = far + along * dot(normal_ws, p_es - far) / slope;
     vec2 texels = vec2(dot(texel.u, hit - p_es), dot(texel.v, hit - p_es));
     return texels * min(1.0, frame.reading.most_texels / max(length(texels), 1e-6));
 }
@@ -154,9 +160,11 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
     float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
     uvz /= w;
-    float lit = filtered(MapPoint(frame.size_texels * uvz.xy, uvz.z, frame.bias.receiver_plane * texel.gradient,
-                                  frame.bias.cone * length(texel.gradient), layer.index, layer.map.space),
-                         texel, to_light, footprint, pixel);
+    MapPoint point = MapPoint(frame.size_texels * uvz.xy, uvz.z,
+                              frame.bias.receiver_plane * texel.gradient,
+                              frame.bias.cone * length(texel.gradient), layer.index,
+                              layer.map.space);
+    float lit = filtered(point, texel, to_light, footprint, pixel);
     // Weights sum to 1 but for rounding: what is all but lit or dark is.
     lit = clamp((1.0 + 2.0 * kRounding) * lit - kRounding, 0.0, 1.0);
     // Maps that are chosen among by their axis hold all receivers, and so do the sun's; what the bias moves

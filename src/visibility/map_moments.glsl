@@ -1,7 +1,8 @@
 // Light from moments of a map's distances, which can be blurred: bounds of how much of what was averaged lies
 // before the receiver. W. Donnelly, A. Lauritzen, "Variance Shadow Maps", I3D 2006; A. Lauritzen,
 // M. McCool, "Layered Variance Shadow Maps", GI 2008, for exponential warps and the cure of light bleeding;
-// T. Annen et al., "Exponential Shadow Maps", GI 2008; C. Peters, R. Klein, "Moment Shadow Mapping", I3D 2015.
+// T. Annen et al., "Exponential Shadow Maps", GI 2008; C. Peters, R. Klein, "Moment Shadow Mapping",
+// I3D 2015.
 
 #ifndef GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
 #define GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
@@ -12,7 +13,8 @@ const float kMomentBias = 1e-5;
 // exp(c d) of a distance from -1 to 1, over exp(c).
 float warped(float along, float exponent) { return exp(2.0 * exponent * (along - 1.0)); }
 
-// exp(c d) and -exp(-c d) of distances from -1 to 1, and their squares: two bounds, of which the lower counts.
+// exp(c d) and -exp(-c d) of distances from -1 to 1, and their squares: two bounds, of which the lower
+// counts.
 vec4 warped_moments(float along, float exponent) {
     float d = 2.0 * along - 1.0;
     float positive = exp(exponent * d);

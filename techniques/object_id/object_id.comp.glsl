@@ -53,7 +53,8 @@ void main() {
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
     vec4 p = frame.clip_from_es * vec4(p_es, 1.0);
     vec3 p_ndc = p.xyz / p.w;
-    float lit = lit_by_map(frame.size_texels * (0.5 * p_ndc.xy + 0.5), imageLoad(receiver_ids, at).x, p_ndc.z);
+    uint object = imageLoad(receiver_ids, at).x;
+    float lit = lit_by_map(frame.size_texels * (0.5 * p_ndc.xy + 0.5), object, p_ndc.z);
     bool inside = p.w > 0.0 && all(lessThanEqual(abs(p_ndc.xy), vec2(1.0)));
     lit = inside || kLightKind == kLightDirectional ? lit : 1.0;
     lit = faces_light(push.light, p_es, normal_ws) ? lit : 0.0;

@@ -1,9 +1,11 @@
+#include <gnomon/error.h>
 #include <gnomon/technique.h>
 
 #include "visibility/context_test.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gnomon {
 namespace {
@@ -56,6 +58,27 @@ TEST_F(MapTechniqueTest, SimplifiedCastersChangeHardlyAPixel) {
         // A quarter of a texel moves edges by as much: of the pixels on edges a few.
         EXPECT_LT(changed(simplified, all), 2e-3) << technique;
     }
+}
+
+// Bytes hold enough of a distance, near a lamp too.
+TEST_F(MapTechniqueTest, DistancesGiveThePicturesOfDepths) {
+    for (const auto& [technique, scene] :
+         {std::pair{"pssm", "field-small"}, {"shadow_map", "courtyard"}, {"omni", "torches"}}) {
+        const Frame frame = frame_of(scene);
+        const Visibility depths = make_technique(context(), technique)->render(frame);
+        for (const char* content : {"distance", "packed", "packed_two"}) {
+            const Visibility distances =
+                make_technique(context(), technique, {{"content", content}})->render(frame);
+            EXPECT_LT(changed(depths, distances), 2e-4) << technique << ", " << content;
+        }
+    }
+}
+
+TEST_F(MapTechniqueTest, PcssOfBytesIsRefused) {
+    EXPECT_THROW(make_technique(context(), "pssm", {{"filter", "pcss"}, {"content", "packed"}}),
+                 Error);
+    EXPECT_NO_THROW(
+        make_technique(context(), "pssm", {{"filter", "pcss"}, {"content", "variance"}}));
 }
 
 TEST_F(MapTechniqueTest, ReusedMapsAreThoseThatWouldBeDrawn) {
