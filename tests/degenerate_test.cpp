@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
+#include <string_view>
 
 namespace gnomon {
 
@@ -106,9 +108,9 @@ protected:
         const Comparison error = compared(frame, truth);
         // Of shadows that an object casts on itself some techniques say that they make none.
         if (info().self_shadows) {
-            EXPECT_LE(error.artefact_lit, edge_share());
+            EXPECT_LE(error.artefact_lit, known_share_);
         }
-        EXPECT_LE(error.artefact_shadow, edge_share());
+        EXPECT_LE(error.artefact_shadow, known_share_);
         if (!visibility_.texel_size_m().empty()) return;
         const ComparisonMask mask = comparison_mask(context(), frame);
         for (unsigned y = 0; y < frame.size.height; ++y) {
@@ -118,14 +120,6 @@ protected:
                     << "at (" << x << ", " << y << "), away from any edge";
             }
         }
-    }
-
-    /// Known failure: where two lit surfaces meet at a hollow angle, texels of the one are nearer
-    /// to the lamp than the plane of the other, extended to them, and darken its outermost texel to
-    /// just below a half; and at the edge of a caster the bias moves receivers out of the shadow of
-    /// what shares the edge. No more than a few pixels of a picture.
-    double edge_share() const {
-        return info().name == "omni" || info().name == "psm" ? 0.001 : 0.0;
     }
 
     void expect_truth(const Scene& scene, const Camera& camera,
@@ -143,7 +137,17 @@ protected:
         expect_truth(scene, from_below());
     }
 
+    /// Known failure of these techniques, told by the test that sees it, in no more than this share
+    /// of the pixels: where two lit surfaces meet at a hollow angle, texels of the one are nearer
+    /// to the light than the plane of the other, extended to them, and darken its outermost texel
+    /// to just below a half; and at the edge of a caster the bias moves receivers out of the shadow
+    /// of what shares the edge.
+    void pin_pixels_at_edges(std::initializer_list<std::string_view> techniques, double share) {
+        if (std::ranges::count(techniques, info().name) != 0) known_share_ = share;
+    }
+
     mutable Visibility visibility_;  // the last one
+    double known_share_ = 0.0;
 };
 
 std::vector<const TechniqueInfo*> casting_techniques() {
@@ -296,6 +300,7 @@ TEST_F(KnownFailure, AShadow256VolumesDeepIsLost) {
 }
 
 TEST_P(Degenerate, AnEdgeOfThreeTriangles) {
+    pin_pixels_at_edges({"omni", "psm"}, 2e-4);
     Mesh mesh;
     mesh.positions = {
         {0, 0.4f, 0}, {0, 1.4f, 0.1f}, {0.8f, 0.9f, 0.1f}, {-0.5f, 1, -0.6f}, {-0.4f, 0.8f, 0.7f}};
@@ -347,9 +352,11 @@ TEST_P(Degenerate, CameraInsideASolid) {
         EXPECT_GT(error.artefact_lit, 0.0);
         EXPECT_LT(error.artefact_lit, 0.005);
         EXPECT_EQ(error.artefact_shadow, 0.0);
-        return;
+    } else {
+        expect_truth(scene, camera, {hard_sun()});
     }
-    expect_truth(scene, camera, {hard_sun(), point({-1.7f, 2.2f, 1.1f})});
+    pin_pixels_at_edges({"omni", "psm"}, 1e-3);
+    expect_truth(scene, camera, {point({-1.7f, 2.2f, 1.1f})});
 }
 
 TEST_P(Degenerate, CasterAcrossTheNearPlane) {
@@ -371,6 +378,7 @@ TEST_P(Degenerate, FarFromTheOrigin) {
 }
 
 TEST_P(Degenerate, OfAMillimetre) {
+    pin_pixels_at_edges({"omni"}, 1e-4);
     constexpr float kScale = 1e-3f;
     const Scene scene = test::make_scene({scaled(test::ground(4.0f), kScale),
                                           scaled(caster_box(), kScale), scaled(sheet(), kScale)});

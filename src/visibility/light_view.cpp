@@ -54,10 +54,9 @@ std::array<DVec4, 4> LightView::planes() const {
 }
 
 LightView spot_view(const SpotLight& light) {
-    constexpr float kMaxHalfAngleRad = radians(80.0f);
-    if (light.outer_angle_rad > kMaxHalfAngleRad) {
-        fail_input("a spot of {:.4g}° does not fit one map; at most 160° do",
-                   2.0f * degrees(light.outer_angle_rad));
+    if (light.outer_angle_rad > kWidestSpotRad) {
+        fail_input("a spot of {:.4g}° does not fit one map; at most {:.4g}° do",
+                   2.0f * degrees(light.outer_angle_rad), 2.0f * degrees(kWidestSpotRad));
     }
     const DVec3 forward(light.direction_ws);
     LightView view = view_along(DVec3(light.position_ws), forward, up_for(forward));

@@ -22,7 +22,10 @@ struct LightView {
     std::array<glm::dvec4, 4> planes() const;
 };
 
-/// Around a spot's cone. Throws Error{input} when the cone is wider than 160°.
+/// Half of the widest cone that one map holds.
+inline constexpr float kWidestSpotRad = radians(80.0f);
+
+/// Around a spot's cone. Throws Error{input} when the cone is wider than twice kWidestSpotRad.
 LightView spot_view(const SpotLight& light);
 
 /// The faces of a cube around the light: +x, -x, +y, -y, +z, -z.

@@ -7,7 +7,8 @@
 #ifndef GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
 #define GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
 
-// Moments are moved this far towards those of an even spread, lest rounding make them impossible.
+// Moments are moved this far towards those of an even spread, lest rounding make them impossible: less
+// lights the ground behind a caster's foot by up to 50 texels, more everywhere lightens shadows.
 const float kMomentBias = 1e-5;
 
 // exp(c d) of a distance from -1 to 1, over exp(c).

@@ -1,5 +1,7 @@
 #include "choice.h"
 
+#include "visibility/light_view.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,11 +48,10 @@ struct ForGpu {
     Choice operator()(const PointLight&) const {
         return {"psm",
                 {{"map_size", map_size_for(frame.size)}},
-                "a cube of perspective maps has the least error of all maps of point lights"};
+                "a cube of perspective maps has its texels where the picture has pixels"};
     }
     Choice operator()(const SpotLight& light) const {
-        constexpr float kWidest_rad = radians(80.0f);
-        if (light.outer_angle_rad > kWidest_rad) return traced("no map holds so wide a spot");
+        if (light.outer_angle_rad > kWidestSpotRad) return traced("no map holds so wide a spot");
         return {
             "shadow_map", {{"map_size", map_size_for(frame.size)}}, "one map holds a spot's cone"};
     }
