@@ -214,9 +214,11 @@ int run(int argc, char** argv) {
     const WorldMesh world(device, scene);
     Floor one_draw(device, size_texels), draws(device, size_texels);
     DepthMap depth_map(device);
-    const auto technique =
-        make_technique(context, "shadow_map",
-                       {{"map_size", map_size}, {"cull_casters", false}, {"caster_error", 0.0}});
+    const auto technique = make_technique(context, "shadow_map",
+                                          {{"map_size", map_size},
+                                           {"cull_casters", false},
+                                           {"cull_faces", false},
+                                           {"caster_error", 0.0}});
     Visibility visibility;
 
     const auto record_one_draw = [&](gpu::Commands& commands) {
@@ -231,7 +233,7 @@ int run(int argc, char** argv) {
         });
     };
     const auto record_map = [&](gpu::Commands& commands) {
-        depth_map.record(commands, gpu_scene, std::array{MapLayer{fit, CasterVolume()}}, false);
+        depth_map.record(commands, gpu_scene, std::array{MapLayer{fit, CasterVolume()}}, {});
     };
     std::vector<Contestant> contestants = {
         {"floor: one draw in the world", [&] { return timed(submission, record_one_draw); }},

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstring>
@@ -207,10 +208,12 @@ void Commands::begin_drawing(const Targets& targets) {
         }
         stencil.imageView = depth.imageView;
     }
+    const bool all_layers = targets.depth != nullptr && targets.depth_layer < 0;
+    const std::uint32_t layers = all_layers ? targets.depth->info().layers : 1;
     const VkRect2D area{{0, 0}, {targets.size.width, targets.size.height}};
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                .renderArea = area,
-                               .layerCount = 1,
+                               .layerCount = layers,
                                .colorAttachmentCount = static_cast<std::uint32_t>(colors.size()),
                                .pColorAttachments = colors.data(),
                                .pDepthAttachment = targets.depth != nullptr ? &depth : nullptr,
@@ -262,6 +265,16 @@ void Commands::bind(const Pipeline& pipeline, std::initializer_list<Binding> bin
     if (count > 0) {
         vkCmdPushDescriptorSetKHR(handle_, pipeline.bind_point(), pipeline.layout(), 0, count,
                                   writes.data());
+    }
+}
+
+void Commands::draw_indexed(const Buffer& draws, std::uint64_t first, std::uint64_t count) {
+    constexpr std::uint32_t kStride = sizeof(VkDrawIndexedIndirectCommand);
+    const std::uint64_t most = device_->limits().maxDrawIndirectCount;
+    for (const std::uint64_t end = first + count; first < end;) {
+        const auto now = static_cast<std::uint32_t>(std::min(most, end - first));
+        vkCmdDrawIndexedIndirect(handle_, draws.handle(), first * kStride, now, kStride);
+        first += now;
     }
 }
 

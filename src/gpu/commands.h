@@ -33,7 +33,7 @@ using Binding = std::variant<StorageBuffer, UniformBuffer, StorageImage, Texture
 struct Targets {
     std::vector<const Image*> colors;
     const Image* depth = nullptr;
-    int depth_layer = -1;  ///< of an array; -1: all of `depth`
+    int depth_layer = -1;  ///< of an array; -1: all layers, among which vertex shaders choose
     Extent size;
     bool clear_colors = true;
     bool clear_depth = true;     ///< to 0, the far plane of reversed Z
@@ -94,6 +94,10 @@ public:
         static_assert(sizeof(T) <= 128, "the least that every device has");
         vkCmdPushConstants(handle_, pipeline.layout(), pipeline.stages(), 0, sizeof(T), &constants);
     }
+
+    /// `count` draws of the index buffer bound, whose numbers are VkDrawIndexedIndirectCommands of
+    /// the buffer from `first` on. Needs Device::optional().multi_draw.
+    void draw_indexed(const Buffer& draws, std::uint64_t first, std::uint64_t count);
 
     /// Enough groups of group_size x group_size for `size`.
     void dispatch(Extent size, unsigned group_size);

@@ -6,6 +6,21 @@
 
 namespace gnomon::gpu {
 
+namespace {
+
+OptionalFeatures optional_features(VkPhysicalDevice device) {
+    VkPhysicalDeviceVulkan12Features v12{.sType =
+                                             VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                       .pNext = &v12};
+    vkGetPhysicalDeviceFeatures2(device, &features);
+    return {.multi_draw = features.features.multiDrawIndirect == VK_TRUE &&
+                          features.features.drawIndirectFirstInstance == VK_TRUE,
+            .layered_output = v12.shaderOutputLayer == VK_TRUE};
+}
+
+}  // namespace
+
 Device::Device(const ContextOptions& options) : instance_(options.validation) {
     const std::vector<Candidate> candidates = rank_devices(instance_);
     create(choose_device(candidates, options.device));
@@ -32,6 +47,7 @@ void Device::create(const Candidate& candidate) {
                                         .queueFamilyIndex = queue_family_,
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
+    optional_ = optional_features(physical_);
     VkPhysicalDeviceVulkan13Features v13{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
         .synchronization2 = VK_TRUE,
@@ -40,12 +56,15 @@ void Device::create(const Candidate& candidate) {
     VkPhysicalDeviceVulkan12Features v12{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
         .pNext = &v13,
-        .scalarBlockLayout = VK_TRUE};
+        .scalarBlockLayout = VK_TRUE,
+        .shaderOutputLayer = optional_.layered_output ? VK_TRUE : VK_FALSE};
     VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                        .pNext = &v12};
     features.features.depthClamp = VK_TRUE;
     features.features.geometryShader = VK_TRUE;
     features.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
+    features.features.multiDrawIndirect = optional_.multi_draw ? VK_TRUE : VK_FALSE;
+    features.features.drawIndirectFirstInstance = features.features.multiDrawIndirect;
     const std::array extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     const VkDeviceCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,

@@ -51,6 +51,12 @@ std::vector<Candidate> rank(std::vector<Candidate> candidates);
 /// The first usable one, or the one that `wanted` (index or part of a name) means.
 const Candidate& choose_device(const std::vector<Candidate>& candidates, const std::string& wanted);
 
+/// What some devices can do, enabled where it is there.
+struct OptionalFeatures {
+    bool multi_draw = false;      ///< many indirect draws at once, from any instance on
+    bool layered_output = false;  ///< vertex shaders choose the layer that they draw into
+};
+
 /// A logical device with one queue that can draw, compute and copy.
 class Device {
 public:
@@ -64,6 +70,7 @@ public:
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceInfo& info() const { return info_; }
+    const OptionalFeatures& optional() const { return optional_; }
     const VkPhysicalDeviceLimits& limits() const { return limits_; }
     std::vector<std::string> validation_messages() const { return instance_.messages(); }
 
@@ -79,6 +86,7 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
     DeviceInfo info_;
+    OptionalFeatures optional_;
     VkPhysicalDeviceLimits limits_{};
     VkPhysicalDeviceMemoryProperties memory_{};
 };

@@ -110,7 +110,7 @@ Box3 bounds_of(const Mesh& mesh, std::span<const UVec3> triangles) {
 }  // namespace
 
 CasterMesh caster_mesh(const Mesh& mesh, std::uint32_t cluster_triangles, Simplify simplify) {
-    CasterMesh result{mesh.triangles, {}};
+    CasterMesh result{.triangles = mesh.triangles};
     const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
     if (count == 0) return result;
     const std::span<UVec3> all(result.triangles);
@@ -118,6 +118,7 @@ CasterMesh caster_mesh(const Mesh& mesh, std::uint32_t cluster_triangles, Simpli
         meshopt_generateShadowIndexBuffer(indices_of(all), indices_of(std::span(mesh.triangles)),
                                           3 * std::size_t{count}, mesh.positions.data(),
                                           mesh.positions.size(), sizeof(Vec3), sizeof(Vec3));
+        result.winding = winding_of(mesh.positions, all);
     }
     if (count > cluster_triangles) {
         const std::vector<UVec3> unsorted = result.triangles;

@@ -2,6 +2,8 @@
 
 #include <gnomon/scene.h>
 
+#include "raster/winding.h"
+
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct MeshCluster {
 struct CasterMesh {
     std::vector<UVec3> triangles;
     std::vector<MeshCluster> clusters;
+    Winding winding = Winding::open;  ///< of all of it; open when it was not asked to simplify
 };
 
 enum class Simplify { no, yes };

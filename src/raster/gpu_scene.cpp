@@ -164,7 +164,10 @@ void GpuScene::place_instances(const gpu::Device& device) {
                               .first_part = static_cast<std::uint32_t>(parts_.size()),
                               .masked = material.masked(),
                               .double_sided = material.double_sided,
-                              .mirrored = mirrors(instance)});
+                              .mirrored = mirrors(instance),
+                              .winding = mirrors(instance)
+                                             ? mirrored(casters_[instance.mesh].winding)
+                                             : casters_[instance.mesh].winding});
         }
         ++draws_.back().slot_count;
         add_parts(instance, slot, first_caster_index_[instance.mesh]);

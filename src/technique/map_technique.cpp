@@ -63,15 +63,18 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     layers_ = {.choice = planned.choice, .layers = {}, .blend = planned.blend};
     for (const PlannedLayer& layer : planned.layers) {
         drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume(),
-                         static_cast<float>(options_.caster_error),
+                         static_cast<float>(options_.caster_error), options_.cull_faces,
                          layer.needed || !options_.cull_casters});
         layers_.layers.push_back(layer.lookup);
         fits.push_back(layer.lookup.fit);
     }
     {
         const gpu::Pass pass(commands, "depth");
-        is_drawn = map_.record(commands, input.scene, drawn, input.frame.ignore_alpha,
-                               options_.reuse_maps);
+        is_drawn = map_.record(commands, input.scene, drawn,
+                               {.ignore_alpha = input.frame.ignore_alpha,
+                                .reuse = options_.reuse_maps,
+                                .multi_draw = options_.multi_draw,
+                                .layered = options_.layered});
     }
     if (contents_ && is_drawn) {
         const gpu::Pass pass(commands, "content");

@@ -19,6 +19,9 @@ struct MapOptions : BiasOptions, ReadingOptions {
     bool cull_casters = true;
     double caster_error = 0.25;
     bool reuse_maps = false;
+    bool cull_faces = true;
+    bool multi_draw = true;
+    bool layered = false;
 
     /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
     /// across the map, and a half for rounding.
@@ -71,13 +74,21 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                          "offset and the slope then make up for a third of the filter's reach"),
         boolean<Options>("cull_casters", &Options::cull_casters,
                          "casters whose shadow no receiver can meet are not drawn"),
+        boolean<Options>("cull_faces", &Options::cull_faces,
+                         "of casters that close and have no holes, faces away from a light at "
+                         "infinity are not drawn"),
         number<Options>("caster_error", &Options::caster_error, 0.0, 4.0, "texels",
                         "casters are simplified by no more than this; receivers are moved as much "
                         "farther towards the light"),
         boolean<Options>(
             "reuse_maps", &Options::reuse_maps,
             "a map is drawn only when it would differ from the last: for lights, casters "
-            "and views that rest")};
+            "and views that rest"),
+        boolean<Options>("multi_draw", &Options::multi_draw,
+                         "casters that are drawn alike are drawn by one command"),
+        boolean<Options>("layered", &Options::layered,
+                         "all layers of a map are drawn in one pass, where the device can; it pays "
+                         "where passes cost more than what is in them")};
 }
 
 /// One layer of a technique's map: where its texels are, which receivers look it up, and what can

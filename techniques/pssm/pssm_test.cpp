@@ -49,6 +49,23 @@ TEST_F(MapTechniqueTest, CastersThatAreNotDrawnAreNotMissed) {
     }
 }
 
+TEST_F(MapTechniqueTest, WaysOfDrawingDoNotChangeThePicture) {
+    for (const char* scene : {"courtyard", "gas-station", "field-small", "jack-o-lantern"}) {
+        Frame frame = frame_of(scene);
+        frame.light = sun(radians(35.0f), radians(200.0f));
+        for (const char* technique : {"shadow_map", "lispsm", "pssm"}) {
+            const Visibility drawn = make_technique(context(), technique)->render(frame);
+            for (const auto& [way, value] :
+                 {std::pair{"cull_faces", false}, {"multi_draw", false}, {"layered", true}}) {
+                const Visibility other =
+                    make_technique(context(), technique, {{way, value}})->render(frame);
+                EXPECT_TRUE(std::ranges::equal(drawn.image().pixels(), other.image().pixels()))
+                    << technique << ", " << scene << ", " << way;
+            }
+        }
+    }
+}
+
 TEST_F(MapTechniqueTest, SimplifiedCastersChangeHardlyAPixel) {
     const Frame frame = frame_of("field-small");
     for (const char* technique : {"shadow_map", "lispsm", "pssm"}) {

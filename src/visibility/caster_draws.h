@@ -1,0 +1,64 @@
+#pragma once
+
+#include "raster/gpu_scene.h"
+#include "visibility/caster_volume.h"
+#include "visibility/light_fit.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace gnomon {
+
+/// One layer of a map: what it shows, and which casters are worth drawing into it.
+struct MapLayer {
+    LightFit fit;
+    CasterVolume casters;
+    float caster_error_texels = 0.0f;  ///< how far simplified casters may be off; 0: none are
+    bool cull_faces = false;           ///< of what closes and has no holes, only faces to the light
+    bool needed = true;                ///< nothing is looked up in a layer that is not
+};
+
+/// Which triangles need not be drawn, by their corners' order in the map's image.
+enum class Culled { none, clockwise, counter_clockwise };
+
+/// One range of triangles, of instances one after the other.
+struct CasterDraw {
+    const raster::Draw* draw = nullptr;
+    std::uint32_t first_index = 0, index_count = 0;
+    std::uint32_t first_instance = 0, instance_count = 0;
+    std::uint32_t slot = 0;  ///< of the last instance
+    Culled culled = Culled::none;
+    bool operator==(const CasterDraw&) const = default;
+};
+
+/// What differs between the instances that one draw draws.
+struct CasterInstance {
+    Mat4 clip_from_local{1.0f};
+    std::uint32_t layer = 0;
+    bool operator==(const CasterInstance&) const = default;
+};
+
+/// What is drawn into a map, layer by layer: plain numbers, before any device hears of them.
+class CasterDraws {
+public:
+    void clear();
+    /// The casters of a layer, as few draws as they make.
+    std::vector<CasterDraw> add(const raster::GpuScene& scene, const MapLayer& layer,
+                                std::uint32_t index);
+
+    const std::vector<CasterInstance>& instances() const { return instances_; }
+    std::uint64_t triangles() const { return triangles_; }  ///< over all layers
+
+private:
+    void add_part(std::vector<CasterDraw>& draws, const CasterDraw& part,
+                  const CasterInstance& instance);
+
+    std::vector<CasterInstance> instances_;
+    std::uint64_t triangles_ = 0;
+};
+
+/// Puts what one state of the pipeline draws side by side: what needs no texture, by what is
+/// culled, then the rest.
+void sort_by_state(std::vector<CasterDraw>& draws);
+
+}  // namespace gnomon
