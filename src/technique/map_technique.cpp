@@ -25,6 +25,8 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
         fail_input("{}: filter pcss reads depths; set content to depth, or choose another filter",
                    info.name);
     }
+    if (options.fit_to == FitTo::picture)
+        survey_ = std::make_unique<ReceiverSurvey>(context.impl().device());
     if (options.content == MapContent::depth) return;
     contents_ = std::make_unique<ContentMap>(context.impl().device(), options.content,
                                              static_cast<float>(options.exponent),
@@ -42,15 +44,24 @@ PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& see
 
 PlannedLayer MapTechnique::local_layer(const Frame& frame, const Seen& seen, const LightView& view,
                                        bool tight) const {
+    const auto planes = view.planes();
+    const Seen inside = seen.within(seen.range, planes);
     const std::vector<DVec3> receivers_ws =
-        visible_corners(frame.camera, frame.size, seen.bounds, seen.range, view.planes());
+        visible_corners(frame.camera, frame.size, inside.bounds, inside.range, planes);
     const LightFit fit =
         fit_view(tight && !receivers_ws.empty() ? fitted(view, receivers_ws) : view,
                  frame.scene.bounds(), options_.size_texels(), options_.margin_texels());
     return {{fit},
-            CasterVolume(fit, visible_planes(frame.camera, frame.size, seen.bounds, seen.range),
+            CasterVolume(fit, visible_planes(frame.camera, frame.size, inside.bounds, inside.range),
                          view.position_ws),
             !receivers_ws.empty()};
+}
+
+bool MapTechnique::survey(gpu::Commands& commands, const RecordInput& input) {
+    if (!survey_) return false;
+    const gpu::Pass pass(commands, "survey");
+    survey_->record(commands, input.receivers);
+    return true;
 }
 
 void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
@@ -58,7 +69,9 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     std::vector<MapLayer> drawn;
     std::vector<LightFit> fits;
     bool is_drawn = false;
-    const Seen seen = seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
+    const Seen seen =
+        survey_ ? survey_->seen()
+                : seen_part(input.frame.camera, input.frame.size, input.scene.part_bounds_ws());
     const MapPlan planned = plan(input.frame, seen);
     layers_ = {.choice = planned.choice, .layers = {}, .blend = planned.blend};
     for (const PlannedLayer& layer : planned.layers) {

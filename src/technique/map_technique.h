@@ -5,6 +5,7 @@
 #include "visibility/depth_map.h"
 #include "visibility/light_view.h"
 #include "visibility/map_lookup.h"
+#include "visibility/receiver_survey.h"
 #include "visibility/seen.h"
 
 #include <concepts>
@@ -13,9 +14,14 @@
 
 namespace gnomon {
 
+/// What receivers are taken to be, in the order of the table: all parts of the scene that the
+/// camera can see, or what its picture shows.
+enum class FitTo { parts, picture };
+
 /// What all techniques with depth maps leave open to their users.
 struct MapOptions : BiasOptions, ReadingOptions {
     int map_size = 2048;
+    FitTo fit_to = FitTo::parts;
     bool cull_casters = true;
     double caster_error = 0.25;
     bool reuse_maps = false;
@@ -38,6 +44,9 @@ template <std::derived_from<MapOptions> Options>
 std::vector<typename ParamTable<Options>::Row> map_rows() {
     return {
         integer<Options>("map_size", &Options::map_size, 16, 16384, "texels", "side of a map"),
+        choice<Options, FitTo>("fit_to", &Options::fit_to, {"parts", "picture"},
+                               "what maps must cover: all parts of the scene that the camera can "
+                               "see, or what its depths show of them, which the host waits for"),
         choice<Options, MapContent>(
             "content", &Options::content,
             {"depth", "distance", "packed", "packed_two", "exponential", "variance",
@@ -122,14 +131,16 @@ protected:
                              bool tight) const;
 
 private:
+    bool survey(gpu::Commands& commands, const RecordInput& input) final;
     void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) final;
     void describe_texels(const Frame& frame, Visibility::Impl& out) final;
     std::uint64_t memory_bytes() const final {
         return map_.memory_bytes() + (contents_ ? contents_->memory_bytes() : 0) +
-               lookup_.memory_bytes();
+               (survey_ ? survey_->memory_bytes() : 0) + lookup_.memory_bytes();
     }
 
     MapOptions options_;
+    std::unique_ptr<ReceiverSurvey> survey_;  // where maps are fitted to the picture
     DepthMap map_;
     std::unique_ptr<ContentMap> contents_;  // where they are not the depths
     MapLookup lookup_;

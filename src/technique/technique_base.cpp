@@ -53,15 +53,24 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
     gpu::Image& visibility = out.impl().device_target(context(), frame.size);
     if (!submission_) submission_ = std::make_unique<gpu::Submission>(context().device());
 
-    const Clock::time_point start = Clock::now();
+    const RecordInput input{frame, scene, receivers->device};
+    const auto submit = [&] {
+        submission_->submit_and_wait();
+        for (const gpu::PassTimer::Time& time : submission_->times())
+            stats.passes.push_back({time.name, time.ms});
+    };
+    Clock::time_point recording = Clock::now();
     gpu::Commands commands = submission_->begin();
-    record(commands, {frame, scene, receivers->device}, visibility);
-    commands.use(visibility, gpu::Use::storage_read);
-    stats.cpu_ms = ms_since(start);
-    submission_->submit_and_wait();
-    for (const gpu::PassTimer::Time& time : submission_->times()) {
-        stats.passes.push_back({time.name, time.ms});
+    if (survey(commands, input)) {
+        stats.cpu_ms = ms_since(recording);
+        submit();
+        recording = Clock::now();
+        commands = submission_->begin();
     }
+    record(commands, input, visibility);
+    commands.use(visibility, gpu::Use::storage_read);
+    stats.cpu_ms += ms_since(recording);
+    submit();
     stats.memory_bytes = memory_bytes();
     describe_texels(frame, out.impl());
 }

@@ -47,13 +47,16 @@ struct RecordInput {
 };
 
 /// A technique on the device. It records into a command buffer that it is given: no submit, no
-/// wait, and no allocation once a frame of the same size has been recorded.
+/// wait but for a survey, and no allocation once a frame of the same size has been recorded.
 class GpuTechnique : public TechniqueBase {
 protected:
     using TechniqueBase::TechniqueBase;
 
     void prepare_scene(const Scene& scene, Progress& progress) override;
 
+    /// Records what the host must have read of the frame before record() can plan it, and tells
+    /// whether that is anything: it is then submitted and waited for.
+    virtual bool survey(gpu::Commands&, const RecordInput&) { return false; }
     /// Records everything that writes `visibility`, an R32F storage image, and leaves `receivers`
     /// in the uses it found them in.
     virtual void record(gpu::Commands& commands, const RecordInput& input,

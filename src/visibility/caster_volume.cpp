@@ -14,13 +14,23 @@ namespace {
 /// a flat ground under everything, and casts no shadow into it.
 constexpr double kTouching = 1e-6;
 
+/// Of a texel's side, along the light: the bias moves receivers as far, past what is no higher.
+constexpr double kTouchingTexels = 0.25;
+
 }  // namespace
 
 CasterVolume::CasterVolume(const LightFit& fit, DVec3 to_light_ws,
-                           std::span<const glm::dvec4> planes_ws, double scene_size_m)
-    : touching_m_(kTouching * scene_size_m) {
+                           std::span<const glm::dvec4> planes_ws, double scene_size_m) {
+    double texel_m = 0.0;
+    if (fit.affine) {
+        const TexelSteps steps = fit.texel_steps();
+        texel_m = static_cast<double>(std::min(glm::length(steps.u_ws), glm::length(steps.v_ws)));
+    }
     for (const glm::dvec4& plane : planes_ws) {
-        if (glm::dot(DVec3(plane), to_light_ws) >= 0.0) planes_.push_back(plane);
+        const double cosine = glm::dot(DVec3(plane), glm::normalize(to_light_ws));
+        if (cosine < 0.0) continue;
+        sides_.push_back(
+            {plane, std::max(kTouching * scene_size_m, kTouchingTexels * texel_m * cosine)});
     }
     add_sides(fit);
 }
@@ -28,7 +38,7 @@ CasterVolume::CasterVolume(const LightFit& fit, DVec3 to_light_ws,
 CasterVolume::CasterVolume(const LightFit& fit, std::span<const glm::dvec4> planes_ws,
                            DVec3 light_ws) {
     for (const glm::dvec4& plane : planes_ws) {
-        if (glm::dot(DVec3(plane), light_ws) + plane.w >= 0.0) planes_.push_back(plane);
+        if (glm::dot(DVec3(plane), light_ws) + plane.w >= 0.0) sides_.push_back({plane});
     }
     add_sides(fit);
 }
@@ -39,13 +49,13 @@ void CasterVolume::add_sides(const LightFit& fit) {
     for (const glm::dvec4& plane :
          {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1], rows[3] + rows[1]}) {
         const double length = glm::length(DVec3(plane));
-        if (length > 0.0) planes_.push_back(plane / length);
+        if (length > 0.0) sides_.push_back({plane / length});
     }
 }
 
 bool CasterVolume::holds(const Box3& box_ws) const {
     return std::ranges::all_of(
-        planes_, [&](const glm::dvec4& plane) { return reach(plane, box_ws) > touching_m_; });
+        sides_, [&](const Side& side) { return reach(side.plane, box_ws) > side.touching_m; });
 }
 
 }  // namespace gnomon

@@ -31,8 +31,11 @@ public:
 private:
     void add_sides(const LightFit& fit);
 
-    std::vector<glm::dvec4> planes_;
-    double touching_m_ = 0.0;  ///< casters that reach no farther in than this only touch
+    struct Side {
+        glm::dvec4 plane;
+        double touching_m = 0.0;  ///< casters that reach no farther in than this only touch
+    };
+    std::vector<Side> sides_;
 };
 
 }  // namespace gnomon

@@ -103,5 +103,36 @@ TEST_F(CasterVolumeTest, SeenPartsTellWhereReceiversBegin) {
     EXPECT_TRUE(seen_part(camera, kSize, {}).bounds.empty());
 }
 
+TEST_F(CasterVolumeTest, TilesTellWhatIsSeenBetweenDistances) {
+    const Seen seen = seen_in({{around({0, 0, -10}, 1), {9.0, 11.0}},
+                               {around({5, 0, -10}, 1), {9.0, 12.0}},
+                               {around({0, 0, -50}, 2), {48.0, 52.0}}});
+    EXPECT_EQ(seen.range.far_m, 52.0);
+    const std::vector<DepthRange> occupied = seen.occupied();
+    ASSERT_EQ(occupied.size(), 2u);
+    EXPECT_EQ(occupied[0].far_m, 12.0);
+    EXPECT_EQ(occupied[1].near_m, 48.0);
+    const Seen near = seen.within({11.5, 40.0});
+    EXPECT_EQ(near.range.near_m, 11.5);
+    EXPECT_EQ(near.range.far_m, 12.0);
+    EXPECT_FLOAT_EQ(near.bounds.min.x, 4.0f);
+    EXPECT_TRUE(seen.within({20.0, 40.0}).bounds.empty());
+    const glm::dvec4 left(-1.0, 0.0, 0.0, 2.0);  // x <= 2
+    EXPECT_FLOAT_EQ(seen.within({}, {&left, 1}).bounds.max.x, 2.0f);
+    EXPECT_TRUE(seen_in({}).bounds.empty());
+}
+
+TEST_F(CasterVolumeTest, DistancesAndDepthsAreInverse) {
+    Camera camera = look_at({0, 5, 18}, {0, 2, 0}, radians(40.0f));
+    for (const float height_m : {0.0f, 10.0f}) {
+        camera.ortho_height_m = height_m;
+        camera.ortho_depth_m = height_m > 0.0f ? 100.0f : 0.0f;
+        for (const double distance_m : {0.2, 3.0, 80.0}) {
+            EXPECT_NEAR(distance_at(camera, kSize, depth_at(camera, kSize, distance_m)), distance_m,
+                        1e-4 * std::max(1.0, distance_m));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace gnomon

@@ -183,6 +183,18 @@ LightFit parallel_fit(const Footprint& footprint, CastersRange range, unsigned s
 
 }  // namespace
 
+float depth_at(const Camera& camera, Extent size, double distance_m) {
+    const DVec4 p = glm::dmat4(camera.clip_from_view(size)) * DVec4(0.0, 0.0, -distance_m, 1.0);
+    return static_cast<float>(p.z / p.w);
+}
+
+// depth * w = z, where both are linear in the distance.
+double distance_at(const Camera& camera, Extent size, float depth) {
+    const glm::dmat4 clip(camera.clip_from_view(size));
+    const double d = static_cast<double>(depth);
+    return (clip[3][2] - d * clip[3][3]) / (clip[2][2] - d * clip[2][3]);
+}
+
 std::vector<DVec3> visible_corners(const Camera& camera, Extent size, const Box3& bounds,
                                    DepthRange range, std::span<const DVec4> within) {
     if (bounds.empty()) return {};

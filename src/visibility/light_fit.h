@@ -17,6 +17,10 @@ struct DepthRange {
     double far_m = std::numeric_limits<double>::infinity();
 };
 
+/// The number in the picture's depth buffer at a distance along the camera's axis, and back.
+float depth_at(const Camera& camera, Extent size, double distance_m);
+double distance_at(const Camera& camera, Extent size, float depth);
+
 /// Corners of the part of `bounds` that the camera sees between two distances, on the inner side of
 /// all planes (unit normal inwards, offset) of `within`: a convex polytope, empty when there is
 /// none. All receivers of the frame that are there lie within it.

@@ -123,12 +123,6 @@ float biased_reach_texels(const ReadingOptions& reading, bool receiver_plane) {
     return (receiver_plane ? kBesidePlane : 1.0f) * deciding_reach_texels(reading);
 }
 
-float depth_at(const Camera& camera, Extent size, double distance_m) {
-    const glm::dvec4 p =
-        glm::dmat4(camera.clip_from_view(size)) * glm::dvec4(0.0, 0.0, -distance_m, 1.0);
-    return static_cast<float>(p.z / p.w);
-}
-
 std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws) {
     const std::span all(layers.layers);
     if (layers.choice == LayerChoice::by_axis) {

@@ -79,8 +79,6 @@ struct LookupLayers {
     double blend = 0.0;
 };
 
-/// The number in the picture's depth buffer at a distance along the camera's axis.
-float depth_at(const Camera& camera, Extent size, double distance_m);
 /// Which layer a point is looked up in.
 std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws);
 

@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace gnomon {
@@ -22,12 +24,61 @@ double nearest_seen_m(const Camera& camera, Extent size, const Box3& box, const 
     return nearest_m;
 }
 
+bool outside_of_any(std::span<const glm::dvec4> planes, const Box3& box) {
+    return std::ranges::any_of(planes,
+                               [&](const glm::dvec4& plane) { return reach(plane, box) < 0.0; });
+}
+
 struct SeenBox {
     const Box3* box;
     double near_m;
 };
 
 }  // namespace
+
+Seen Seen::within(DepthRange part, std::span<const glm::dvec4> planes) const {
+    if (tiles.empty()) {
+        return {
+            bounds, {std::max(range.near_m, part.near_m), std::min(range.far_m, part.far_m)}, {}};
+    }
+    std::vector<SeenTile> inside;
+    for (const SeenTile& tile : tiles) {
+        const DepthRange both{std::max(tile.range.near_m, part.near_m),
+                              std::min(tile.range.far_m, part.far_m)};
+        if (both.far_m < both.near_m || outside_of_any(planes, tile.bounds)) continue;
+        inside.push_back({tile.bounds, both});
+    }
+    return seen_in(std::move(inside));
+}
+
+std::vector<DepthRange> Seen::occupied() const {
+    if (tiles.empty()) return {range};
+    std::vector<DepthRange> ranges;
+    for (const SeenTile& tile : tiles)
+        ranges.push_back(tile.range);
+    std::ranges::sort(ranges, {}, &DepthRange::near_m);
+    std::vector<DepthRange> apart{ranges.front()};
+    for (const DepthRange& next : ranges) {
+        if (next.near_m > apart.back().far_m) {
+            apart.push_back(next);
+        } else {
+            apart.back().far_m = std::max(apart.back().far_m, next.far_m);
+        }
+    }
+    return apart;
+}
+
+Seen seen_in(std::vector<SeenTile> tiles) {
+    if (tiles.empty()) return {{}, {0.0, 0.0}, {}};
+    Seen seen{{}, {std::numeric_limits<double>::infinity(), 0.0}, std::move(tiles)};
+    for (const SeenTile& tile : seen.tiles) {
+        seen.bounds.include(tile.bounds.min);
+        seen.bounds.include(tile.bounds.max);
+        seen.range.near_m = std::min(seen.range.near_m, tile.range.near_m);
+        seen.range.far_m = std::max(seen.range.far_m, tile.range.far_m);
+    }
+    return seen;
+}
 
 Seen seen_part(const Camera& camera, Extent size, std::span<const Box3> boxes_ws) {
     Box3 all;
@@ -37,18 +88,14 @@ Seen seen_part(const Camera& camera, Extent size, std::span<const Box3> boxes_ws
         all.include(box.max);
     }
     const std::vector<glm::dvec4> planes = visible_planes(camera, size, all);
-    if (planes.empty()) return {{}, {0.0, 0.0}};
+    if (planes.empty()) return {{}, {0.0, 0.0}, {}};
 
     const glm::dmat4 view(camera.view_from_world);
     const glm::dvec4 depth(-view[0].z, -view[1].z, -view[2].z, -view[3].z);
-    Seen seen{{}, {std::numeric_limits<double>::infinity(), 0.0}};
+    Seen seen{{}, {std::numeric_limits<double>::infinity(), 0.0}, {}};
     std::vector<SeenBox> boxes;
     for (const Box3& box : boxes_ws) {
-        if (box.empty() || std::ranges::any_of(planes, [&](const glm::dvec4& plane) {
-                return reach(plane, box) < 0.0;
-            })) {
-            continue;
-        }
+        if (box.empty() || outside_of_any(planes, box)) continue;
         const DepthRange range = depth_range(depth, box);
         boxes.push_back({&box, range.near_m});
         seen.range.far_m = std::max(seen.range.far_m, range.far_m);

@@ -65,15 +65,17 @@ private:
         // In a parallel view depths are no inverses of distances, by which the look-up mixes.
         if (frame.camera.ortho_height_m == 0.0f) plan.blend = options_.split_blend;
         if (seen.range.far_m > seen.range.near_m) {
-            const DepthRange view = options_.fit == Fit::stable ? in_steps(seen.range) : seen.range;
-            const std::vector<double> distances_m = pssm::split_distances(
-                view.near_m, view.far_m, options_.splits, options_.split_lambda);
+            const std::vector<DepthRange> occupied =
+                options_.fit == Fit::stable ? std::vector{in_steps(seen.range)} : seen.occupied();
+            const std::vector<double> distances_m =
+                pssm::split_distances(occupied, options_.splits, options_.split_lambda);
             for (std::size_t i = 0; i + 1 < distances_m.size(); ++i) {
                 const DepthRange range{distances_m[i] * (1.0 - plan.blend), distances_m[i + 1]};
+                const Seen inside = seen.within(range);
                 const std::vector<DVec3> receivers_ws =
-                    visible_corners(frame.camera, frame.size, seen.bounds, range);
+                    visible_corners(frame.camera, frame.size, inside.bounds, inside.range);
                 if (receivers_ws.empty()) continue;
-                plan.layers.push_back(split(frame, seen, range, receivers_ws));
+                plan.layers.push_back(split(frame, inside, range, receivers_ws));
                 plan.layers.back().lookup.from_m = distances_m[i];
             }
         }
@@ -91,7 +93,7 @@ private:
                                             options_.size_texels(), options_.margin_texels())
                    : fit_warped(options_.warp, kDefaultFocus, light, frame.camera, receivers_ws,
                                 bounds, options_.size_texels(), options_.margin_texels());
-        return directional_layer(frame, seen, fit, range);
+        return directional_layer(frame, seen, fit, stable ? range : seen.range);
     }
 
     Options options_;
@@ -103,7 +105,7 @@ const TechniqueInfo& pssm_info() {
     static const TechniqueInfo info{
         .name = "pssm",
         .title = "Parallel-split shadow maps",
-        .source = "zhang2006, engel2006, valient2008, wimmer2004",
+        .source = "zhang2006, lauritzen2011, engel2006, valient2008, wimmer2004",
         .lights = LightKinds::directional,
         .penumbra = Penumbra::fixed_width,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },

@@ -49,6 +49,25 @@ TEST_F(MapTechniqueTest, CastersThatAreNotDrawnAreNotMissed) {
     }
 }
 
+TEST_F(MapTechniqueTest, MapsFittedToThePictureErrLessAndMissNoCaster) {
+    for (const char* scene : {"courtyard", "field-small", "field-large"}) {
+        const Frame frame = frame_of(scene);
+        const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
+        const ComparisonMask mask = comparison_mask(context(), frame);
+        const Visibility parts = make_technique(context(), "shadow_map")->render(frame);
+        const Params fitted{{"fit_to", "picture"}};
+        const Visibility picture = make_technique(context(), "shadow_map", fitted)->render(frame);
+        EXPECT_LT(compare(picture, truth, mask).rmse, compare(parts, truth, mask).rmse) << scene;
+        for (const char* technique : {"shadow_map", "pssm"}) {
+            const Visibility culled = make_technique(context(), technique, fitted)->render(frame);
+            const Visibility all = make_technique(context(), technique,
+                                                  {{"fit_to", "picture"}, {"cull_casters", false}})
+                                       ->render(frame);
+            EXPECT_LT(changed(culled, all), 2e-4) << technique << ", " << scene;
+        }
+    }
+}
+
 TEST_F(MapTechniqueTest, WaysOfDrawingDoNotChangeThePicture) {
     for (const char* scene : {"courtyard", "gas-station", "field-small", "jack-o-lantern"}) {
         Frame frame = frame_of(scene);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "gpu/commands.h"
+#include "raster/receivers.h"
+#include "visibility/seen.h"
+
+#include <cstdint>
+
+namespace gnomon {
+
+/// Finds where a picture's receivers are, from its depths: A. Lauritzen, M. Salvi, A. Lefohn,
+/// "Sample Distribution Shadow Maps", I3D 2011. Departure: bounds are kept tile by tile and read by
+/// the host, which plans maps and culls casters by them.
+class ReceiverSurvey {
+public:
+    explicit ReceiverSurvey(const gpu::Device& device);
+
+    /// The receivers are in use to be read, and stay so.
+    void record(gpu::Commands& commands, const raster::Receivers& receivers);
+    /// When the device has finished.
+    Seen seen();
+
+    std::uint64_t memory_bytes() const { return tiles_.memory_bytes(); }
+
+private:
+    const gpu::Device& device_;
+    gpu::Pipeline pipeline_;
+    gpu::Sampler nearest_;
+    gpu::Buffer tiles_;
+    Camera camera_;
+    Extent size_;
+};
+
+}  // namespace gnomon
