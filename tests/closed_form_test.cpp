@@ -149,6 +149,7 @@ std::size_t crease_pixels(const std::string& label) {
         label == "object_id_compare_ids_and_depths") {
         return 1;
     }
+    if (label == "pssm_filter_dithered_4") return 3;
     return label == "tsm_filter_dithered_4" ? 2 : 0;
 }
 
