@@ -214,11 +214,9 @@ int run(int argc, char** argv) {
     const WorldMesh world(device, scene);
     Floor one_draw(device, size_texels), draws(device, size_texels);
     DepthMap depth_map(device);
-    const auto technique = make_technique(context, "shadow_map",
-                                          {{"map_size", map_size},
-                                           {"cull_casters", false},
-                                           {"cull_faces", false},
-                                           {"caster_error", 0.0}});
+    const auto technique = make_technique(
+        context, "shadow_map",
+        {{"map_size", map_size}, {"cull_casters", false}, {"faces", "all"}, {"caster_error", 0.0}});
     Visibility visibility;
 
     const auto record_one_draw = [&](gpu::Commands& commands) {

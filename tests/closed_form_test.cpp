@@ -143,8 +143,10 @@ INSTANTIATE_TEST_SUITE_P(Techniques, ClosedFormApart, testing::ValuesIn(test::su
 
 /// Known failure: a pixel at the foot of a lit wall of the cube, whose texel holds the ground, is
 /// taken for shadow. No technique's default filter has it.
+/// Of second depths: one that leaks where the cube stands on the ground.
 std::size_t crease_pixels(const std::string& label) {
-    if (label == "pssm_filter_nearest" || label == "lispsm_filter_dithered_4" ||
+    if (label == "pssm_faces_unlit" || label == "shadow_map_faces_unlit" ||
+        label == "pssm_filter_nearest" || label == "lispsm_filter_dithered_4" ||
         label == "psm_filter_dithered_4" || label == "object_id" ||
         label == "object_id_compare_ids_and_depths") {
         return 1;

@@ -73,6 +73,20 @@ TEST_F(DeliberateBugs, NoBiasGivesAcne) {
     }
 }
 
+TEST_F(DeliberateBugs, SecondDepthsNeedNoBias) {
+    Frame frame = sunny();
+    frame.scene = Scene(test::scene_data({test::box({-1, 0, -1}, {1, 0.5f, 1}),  // both close
+                                          test::box({-0.3f, 0.9f, -0.3f}, {0.3f, 1.4f, 0.3f})}));
+    Params params = coarse_map();
+    for (const char* name : {"caster_error", "bias_constant", "bias_slope", "normal_offset"})
+        params.set(name, 0.0);
+    params.set("receiver_plane", false);
+    params.set("faces", std::string("lit"));
+    EXPECT_GT(test::compare_with_truth("shadow_map", frame, params).artefact_shadow, kPlain);
+    params.set("faces", std::string("unlit"));
+    EXPECT_LT(test::compare_with_truth("shadow_map", frame, params).artefact_shadow, kClean);
+}
+
 TEST_F(DeliberateBugs, TooMuchBiasDetachesShadows) {
     for (const Frame& frame : {sunny(), spotlit()}) {
         SCOPED_TRACE(light_name(frame.light));

@@ -76,7 +76,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     layers_ = {.choice = planned.choice, .layers = {}, .blend = planned.blend};
     for (const PlannedLayer& layer : planned.layers) {
         drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume(),
-                         static_cast<float>(options_.caster_error), options_.cull_faces,
+                         static_cast<float>(options_.caster_error), options_.faces,
                          layer.needed || !options_.cull_casters});
         layers_.layers.push_back(layer.lookup);
         fits.push_back(layer.lookup.fit);

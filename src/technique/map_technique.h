@@ -25,7 +25,7 @@ struct MapOptions : BiasOptions, ReadingOptions {
     bool cull_casters = true;
     double caster_error = 0.25;
     bool reuse_maps = false;
-    bool cull_faces = true;
+    CasterFaces faces = CasterFaces::lit;
     bool multi_draw = true;
     bool layered = false;
 
@@ -83,9 +83,11 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                          "offset and the slope then make up for a third of the filter's reach"),
         boolean<Options>("cull_casters", &Options::cull_casters,
                          "casters whose shadow no receiver can meet are not drawn"),
-        boolean<Options>("cull_faces", &Options::cull_faces,
-                         "of casters that close and have no holes, faces away from a light at "
-                         "infinity are not drawn"),
+        choice<Options, CasterFaces>(
+            "faces", &Options::faces, {"all", "lit", "unlit"},
+            "of casters that close and have no holes, as a light at infinity sees them, which "
+            "faces are drawn: those towards it hide the others, and those away from it need no "
+            "bias, but leak where something stands on them"),
         number<Options>("caster_error", &Options::caster_error, 0.0, 4.0, "texels",
                         "casters are simplified by no more than this; receivers are moved as much "
                         "farther towards the light"),

@@ -9,13 +9,20 @@
 
 namespace gnomon {
 
+/// Which faces are drawn of casters that close and have no holes, as a light at infinity sees them.
+enum class CasterFaces {
+    all,
+    lit,    ///< towards it: they hide the others, so that the map is the same
+    unlit,  ///< away from it: Y. Wang, S. Molnar, "Second-Depth Shadow Mapping", UNC TR94-019, 1994
+};
+
 /// One layer of a map: what it shows, and which casters are worth drawing into it.
 struct MapLayer {
     LightFit fit;
     CasterVolume casters;
     float caster_error_texels = 0.0f;  ///< how far simplified casters may be off; 0: none are
-    bool cull_faces = false;           ///< of what closes and has no holes, only faces to the light
-    bool needed = true;                ///< nothing is looked up in a layer that is not
+    CasterFaces faces = CasterFaces::all;
+    bool needed = true;  ///< nothing is looked up in a layer that is not
 };
 
 /// Which triangles need not be drawn, by their corners' order in the map's image.

@@ -74,8 +74,9 @@ TEST_F(MapTechniqueTest, WaysOfDrawingDoNotChangeThePicture) {
         frame.light = sun(radians(35.0f), radians(200.0f));
         for (const char* technique : {"shadow_map", "lispsm", "pssm"}) {
             const Visibility drawn = make_technique(context(), technique)->render(frame);
-            for (const auto& [way, value] :
-                 {std::pair{"cull_faces", false}, {"multi_draw", false}, {"layered", true}}) {
+            for (const auto& [way, value] : {std::pair<const char*, ParamValue>{"faces", "all"},
+                                             {"multi_draw", false},
+                                             {"layered", true}}) {
                 const Visibility other =
                     make_technique(context(), technique, {{way, value}})->render(frame);
                 EXPECT_TRUE(std::ranges::equal(drawn.image().pixels(), other.image().pixels()))
