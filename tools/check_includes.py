@@ -16,6 +16,7 @@ MAX_LINES = 500
 BASE = {"base"}
 IMAGE = BASE | {"image"}
 SCENE = IMAGE | {"scene"}
+SUN = SCENE | {"sun"}
 GPU = IMAGE | {"gpu"}
 VISIBILITY = SCENE | GPU | {"raster", "trace", "visibility"}
 TECHNIQUE = VISIBILITY | {"technique"}
@@ -23,13 +24,14 @@ MODULES = {
     "base": BASE,
     "image": IMAGE,
     "scene": SCENE,
+    "sun": SUN,
     "trace": SCENE | {"trace"},
     "gpu": GPU,
     "raster": SCENE | GPU | {"raster"},
     "visibility": VISIBILITY,
     "technique": TECHNIQUE,
     "lighting": VISIBILITY | {"lighting"},
-    "report": TECHNIQUE | {"lighting", "report"},
+    "report": TECHNIQUE | {"sun", "lighting", "report"},
 }
 ALL = set(MODULES)
 
@@ -38,6 +40,7 @@ PUBLIC = {
     "error": "base", "math": "base", "progress": "base",
     "image": "image", "metrics": "image",
     "light": "scene", "scene": "scene",
+    "light_path": "sun",
     "context": "gpu",
     "visibility": "visibility",
     "technique": "technique",
@@ -50,7 +53,7 @@ PUBLIC = {
 # Third-party headers that only some modules may see.
 RESERVED = [
     (re.compile(r"embree\d?/"), "Embree", {"trace"}),
-    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - SCENE - {"trace"}),
+    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - SUN - {"trace"}),
 ]
 
 # Public headers may use the standard library, glm and each other.

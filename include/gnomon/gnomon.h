@@ -6,6 +6,7 @@
 #include <gnomon/error.h>
 #include <gnomon/image.h>
 #include <gnomon/light.h>
+#include <gnomon/light_path.h>
 #include <gnomon/lighting.h>
 #include <gnomon/math.h>
 #include <gnomon/metrics.h>
