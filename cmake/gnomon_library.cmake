@@ -65,7 +65,8 @@ configure_package_config_file(cmake/gnomonConfig.cmake.in "${PROJECT_BINARY_DIR}
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake"
                                  COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/gnomonConfig.cmake"
-              "${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake" DESTINATION "${config_folder}")
+              "${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake"
+              "${PROJECT_SOURCE_DIR}/cmake/FindERFA.cmake" DESTINATION "${config_folder}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(TARGETS gnomon EXPORT gnomonTargets)
 install(EXPORT gnomonTargets NAMESPACE gnomon:: DESTINATION "${config_folder}")

@@ -40,7 +40,7 @@ PUBLIC = {
     "error": "base", "math": "base", "progress": "base",
     "image": "image", "metrics": "image",
     "light": "scene", "scene": "scene",
-    "light_path": "sun",
+    "sun": "sun", "light_path": "sun",
     "context": "gpu",
     "visibility": "visibility",
     "technique": "technique",
@@ -54,6 +54,7 @@ PUBLIC = {
 RESERVED = [
     (re.compile(r"embree\d?/"), "Embree", {"trace"}),
     (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - SUN - {"trace"}),
+    (re.compile(r"erfa"), "ERFA", {"sun"}),
 ]
 
 # Public headers may use the standard library, glm and each other.

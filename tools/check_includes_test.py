@@ -82,6 +82,11 @@ class CheckIncludes(unittest.TestCase):
         self.assert_right("src/gpu/a.cpp", "#include <volk.h>")
         self.assert_right("bench/a.cpp", "#include <embree3/rtcore.h>", "#include <volk.h>")
 
+    def test_erfa_stays_in_sun(self):
+        self.assert_fault("src/scene/a.cpp", "#include <erfa.h>", "ERFA is not for scene")
+        self.assert_right("src/sun/a.cpp", "#include <erfa.h>", "#include <gnomon/light.h>")
+        self.assert_fault("src/scene/a.h", "#include <gnomon/sun.h>", "scene is not above sun")
+
     def test_headers_are_guarded_and_files_short(self):
         self.assertIn("#pragma once", self.faults("src/base/a.h", "int a;")[0])
         limit = check_includes.MAX_LINES

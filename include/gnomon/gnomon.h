@@ -13,5 +13,6 @@
 #include <gnomon/progress.h>
 #include <gnomon/report.h>
 #include <gnomon/scene.h>
+#include <gnomon/sun.h>
 #include <gnomon/technique.h>
 #include <gnomon/visibility.h>
