@@ -43,12 +43,13 @@ inline std::vector<Subject> casting_subjects() {
     return subjects;
 }
 
-/// The same, but the filters and contents that all maps share with only one of them.
+/// The same, but the choices that all maps share with only one of them.
 inline std::vector<Subject> subjects_apart() {
     std::vector<Subject> subjects = casting_subjects();
     std::erase_if(subjects, [](const Subject& subject) {
         const bool shared = subject.label.find("_filter_") != std::string::npos ||
-                            subject.label.find("_content_") != std::string::npos;
+                            subject.label.find("_content_") != std::string::npos ||
+                            subject.label.find("_skip_uniform_") != std::string::npos;
         return shared && subject.technique != "shadow_map";
     });
     return subjects;

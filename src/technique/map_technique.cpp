@@ -19,6 +19,7 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
     : GpuTechnique(context, info),
       options_(options),
       map_(context.impl().device()),
+      bounds_(context.impl().device(), options),
       lookup_(context.impl().device(), options, bias(options)) {
     if (options.filter == MapFilter::pcss && options.content != MapContent::depth &&
         !is_blurred(options.content)) {
@@ -93,9 +94,17 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
         const gpu::Pass pass(commands, "content");
         contents_->record(commands, map_.image(), fits);
     }
+    if (is_drawn) bounds_.outdate();
+    const bool is_bounded =
+        bounds_.pay(options_.skip_uniform, input.frame.size, map_.image(), fits);
+    if (is_bounded) {
+        const gpu::Pass pass(commands, "bounds");
+        bounds_.record(commands, map_.image());
+    }
     const gpu::Pass pass(commands, "lookup");
     lookup_.record(commands, input.receivers, input.frame.light, layers_,
-                   contents_ ? contents_->image() : map_.image(), visibility);
+                   contents_ ? contents_->image() : map_.image(), is_bounded ? &bounds_ : nullptr,
+                   visibility);
 }
 
 void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {

@@ -4,6 +4,7 @@
 #include "technique/technique_base.h"
 #include "visibility/depth_map.h"
 #include "visibility/light_view.h"
+#include "visibility/map_bounds.h"
 #include "visibility/map_lookup.h"
 #include "visibility/receiver_survey.h"
 #include "visibility/seen.h"
@@ -28,6 +29,7 @@ struct MapOptions : BiasOptions, ReadingOptions {
     CasterFaces faces = CasterFaces::lit;
     bool multi_draw = true;
     bool layered = false;
+    SkipUniform skip_uniform = SkipUniform::automatic;
 
     /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
     /// across the map, and a half for rounding.
@@ -99,7 +101,11 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                          "casters that are drawn alike are drawn by one command"),
         boolean<Options>("layered", &Options::layered,
                          "all layers of a map are drawn in one pass, where the device can; it pays "
-                         "where passes cost more than what is in them")};
+                         "where passes cost more than what is in them"),
+        choice<Options, SkipUniform>(
+            "skip_uniform", &Options::skip_uniform, {"automatic", "never", "always"},
+            "where bounds of the map's tiles prove a receiver lit or dark, its filter is skipped, "
+            "which changes no pixel; automatic: where that saves more than the bounds take")};
 }
 
 /// One layer of a technique's map: where its texels are, which receivers look it up, and what can
@@ -118,6 +124,10 @@ struct MapPlan {
 
 /// A technique with a depth map: says where its texels go. Everything else is alike for all.
 class MapTechnique : public GpuTechnique {
+public:
+    /// MapLookup::show_proven(), for those who count.
+    void show_proven() { lookup_.show_proven(); }
+
 protected:
     MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options);
 
@@ -138,13 +148,15 @@ private:
     void describe_texels(const Frame& frame, Visibility::Impl& out) final;
     std::uint64_t memory_bytes() const final {
         return map_.memory_bytes() + (contents_ ? contents_->memory_bytes() : 0) +
-               (survey_ ? survey_->memory_bytes() : 0) + lookup_.memory_bytes();
+               (survey_ ? survey_->memory_bytes() : 0) + bounds_.memory_bytes() +
+               lookup_.memory_bytes();
     }
 
     MapOptions options_;
     std::unique_ptr<ReceiverSurvey> survey_;  // where maps are fitted to the picture
     DepthMap map_;
     std::unique_ptr<ContentMap> contents_;  // where they are not the depths
+    MapBounds bounds_;                      // where filters are skipped by them
     MapLookup lookup_;
     LookupLayers layers_;  // of the last frame
 };

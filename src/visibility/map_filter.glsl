@@ -128,11 +128,11 @@ float lit_dithered_4(sampler2DArray map, float size, MapBias bias, MapPoint poin
     return 0.25 * lit;
 }
 
-// All sixteen.
-float lit_taps_16(sampler2DArray map, float size, MapBias bias, MapPoint point) {
+// All sixteen, or none.
+float lit_taps_16(sampler2DArray map, float size, MapBias bias, MapPoint point, uint taps) {
     float lit = 0.0;
-    for (int i = 0; i < 16; ++i)
-        lit += lit_bilinear(map, size, bias, point, point.texel + vec2(i % 4, i / 4) - 1.5);
+    for (uint i = 0u; i < taps; ++i)
+        lit += lit_bilinear(map, size, bias, point, point.texel + vec2(i % 4u, i / 4u) - 1.5);
     return lit / 16.0;
 }
 
@@ -157,29 +157,32 @@ vec2 square_sample(uint i, float shift) {
     return fract(float(i) * vec2(0.75487767, 0.56984029) + vec2(shift, fract(7.0 * shift))) - 0.5;
 }
 
-// Bilinear taps over a disc that `spread` makes an ellipse of, in texels.
-float lit_disc(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread, float turn) {
+// Bilinear taps, `taps` of kTaps or none, over a disc that `spread` makes an ellipse of, in texels.
+float lit_disc(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread,
+               float turn, uint taps) {
     float lit = 0.0;
-    for (uint i = 0u; i < kTaps; ++i)
+    for (uint i = 0u; i < taps; ++i)
         lit += lit_bilinear(map, size, bias, point, point.texel + spread * disc_sample(i, turn));
     return lit / float(kTaps);
 }
 
 // Bilinear taps over a parallelogram of the sides `spread`, in texels: W. Reeves, D. Salesin, R. Cook,
 // "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987.
-float lit_footprint(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread, float shift) {
+float lit_footprint(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread,
+                    float shift, uint taps) {
     float lit = 0.0;
-    for (uint i = 0u; i < kTaps; ++i)
+    for (uint i = 0u; i < taps; ++i)
         lit += lit_bilinear(map, size, bias, point, point.texel + spread * square_sample(i, shift));
     return lit / float(kTaps);
 }
 
 // The mean depth of what hides the receiver within an ellipse of the map; 0 where nothing does. R. Fernando,
 // "Percentage-Closer Soft Shadows", SIGGRAPH 2005 sketches.
-float blocker_depth(sampler2DArray map, float size, MapPoint point, mat2 spread, float turn) {
+float blocker_depth(sampler2DArray map, float size, MapPoint point, mat2 spread, float turn,
+                    uint taps) {
     float sum = 0.0;
     float blockers = 0.0;
-    for (uint i = 0u; i < kTaps; ++i) {
+    for (uint i = 0u; i < taps; ++i) {
         vec2 at = point.texel + spread * disc_sample(i, turn);
         vec2 texel = clamp(floor(at), 0.0, size - 1.0);
         vec2 d = texel + 0.5 - point.texel;

@@ -13,8 +13,10 @@ layout(constant_id = 3) const uint kTaps = 16u;  // of filters that have no numb
 layout(constant_id = 4) const uint kLayerCount = 1u;
 layout(constant_id = 5) const uint kAffine = 1u;  // all texels of a layer are of one size
 layout(constant_id = 6) const uint kLayerChoice = kChooseByDistance;
+layout(constant_id = 7) const uint kProof = kProofNone;
 
 #include "visibility/map_bias.glsl"
+#include "visibility/map_bounds.glsl"
 #include "visibility/map_filter.glsl"
 #include "visibility/map_moments.glsl"
 #include "visibility/receiver.glsl"
@@ -24,6 +26,7 @@ layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D visibility;
 layout(set = 0, binding = 3) uniform sampler2DArray map;
 layout(set = 0, binding = 4, scalar) uniform Frame { MapFrame frame; };
+layout(set = 0, binding = 5) uniform sampler2DArray bounds;
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
@@ -99,26 +102,61 @@ mat2 texels_across_light(TexelAt texel, vec3 to_light) {
     return mat2(dot(texel.u, across), dot(texel.v, across), dot(texel.u, other), dot(texel.v, other));
 }
 
+// How far PCSS searches, in metres across the light: no penumbra of the sun is wider.
+float pcss_search_m(MapPoint point, TexelAt texel, vec3 to_light) {
+    float most_m = frame.reading.most_texels * texel.side_m;
+    float depth_per_m = max(dot(texel.z, to_light), 1e-20);
+    float search_m = push.light.radius * (1.0 - point.depth) / depth_per_m;
+    return kLightKind == kLightDirectional ? clamp(search_m, texel.side_m, most_m) : most_m;
+}
+
 // The light's own penumbra: as wide as the light looks from what hides it, in metres across the light.
-float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn) {
+float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn, uint taps) {
     float most_m = frame.reading.most_texels * texel.side_m;
     float least_m = texel.side_m;
     float depth_per_m = max(dot(texel.z, to_light), 1e-20);
     bool at_infinity = kLightKind == kLightDirectional;
-    float search_m = at_infinity ? push.light.radius * (1.0 - point.depth) / depth_per_m : most_m;
     mat2 texels = texels_across_light(texel, to_light);
     float blocker = blocker_depth(map, frame.size_texels, point,
-                                  clamp(search_m, least_m, most_m) * texels, turn);
+                                  pcss_search_m(point, texel, to_light) * texels, turn, taps);
     float behind = at_infinity ? (blocker - point.depth) / depth_per_m
                                : blocker / max(point.depth, 1e-20) - 1.0;
     float penumbra_m = clamp(push.light.radius * behind, least_m, most_m);
-    float lit = lit_disc(map, frame.size_texels, frame.bias, point, penumbra_m * texels, turn);
+    float lit = lit_disc(map, frame.size_texels, frame.bias, point, penumbra_m * texels, turn, taps);
     return blocker > 0.0 ? lit : 1.0;
 }
 
-float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uvec2 pixel) {
+// How far from the receiver are the centres of what the filter reads, in texels along the axes.
+vec2 filter_reach(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint) {
+    const float kBilinear = 1.0;
+    switch (kFilter) {
+        case kFilterNearest:
+            return vec2(0.5);
+        case kFilterHardware2x2:
+            return vec2(kBilinear);
+        case kFilterBox3x3:
+            return vec2(1.5);
+        case kFilterDithered4:
+        case kFilterTaps16:
+            return vec2(1.5 + kBilinear);
+        case kFilterDisc:
+            return vec2(frame.reading.radius_texels + kBilinear);
+        case kFilterFootprint:
+            return 0.5 * (abs(footprint[0]) + abs(footprint[1])) + kBilinear;
+        case kFilterPcss:
+            mat2 axes = transpose(pcss_search_m(point, texel, to_light) *
+                                  texels_across_light(texel, to_light));
+            return vec2(length(axes[0]), length(axes[1])) + kBilinear;
+    }
+    return vec2(2.0);
+}
+
+// `needed`: false where the result is not used.
+float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uvec2 pixel,
+               bool needed) {
     if (kContent >= kContentExponential) return lit_by_blurred(point);
     float size = frame.size_texels;
+    uint taps = needed ? kTaps : 0u;
     switch (kFilter) {
         case kFilterNearest:
             return lit_nearest(map, size, frame.bias, point);
@@ -129,14 +167,14 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
         case kFilterDithered4:
             return lit_dithered_4(map, size, frame.bias, point, pixel);
         case kFilterTaps16:
-            return lit_taps_16(map, size, frame.bias, point);
+            return lit_taps_16(map, size, frame.bias, point, needed ? 16u : 0u);
         case kFilterDisc:
             return lit_disc(map, size, frame.bias, point, mat2(frame.reading.radius_texels),
-                            gradient_noise(pixel));
+                            gradient_noise(pixel), taps);
         case kFilterFootprint:
-            return lit_footprint(map, size, frame.bias, point, footprint, gradient_noise(pixel));
+            return lit_footprint(map, size, frame.bias, point, footprint, gradient_noise(pixel), taps);
         case kFilterPcss:
-            return lit_pcss(point, texel, to_light, gradient_noise(pixel));
+            return lit_pcss(point, texel, to_light, gradient_noise(pixel), taps);
     }
     return lit_box_4x4(map, size, frame.bias, point);
 }
@@ -155,7 +193,9 @@ vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float d
     return texels * min(1.0, frame.reading.most_texels / max(length(texels), 1e-6));
 }
 
-float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint, uvec2 pixel) {
+// `known`: what is known beforehand, or kNotProven.
+float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint,
+                 uvec2 pixel, float known) {
     vec4 p = vec4(p_es, 1.0);
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
     float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
@@ -164,9 +204,22 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
                               frame.bias.receiver_plane * texel.gradient,
                               frame.bias.cone * length(texel.gradient), layer.index,
                               layer.map.space);
-    float lit = filtered(point, texel, to_light, footprint, pixel);
+    float lit = known;
+    if (kProof != kProofNone) {
+        float proven = proven_lit(bounds, frame.size_texels, frame.bounded_texels, frame.bias,
+                                  point, filter_reach(point, texel, to_light, footprint));
+        lit = lit == kNotProven ? proven : lit;
+        if (kProof == kProofShown) return lit;
+        // A branch for devices that leave it out; software drivers walk through both of its sides,
+        // but leave the loops of `filtered` after one turn that no pixel needs.
+        bool needed = lit == kNotProven;
+        if (needed) lit = filtered(point, texel, to_light, footprint, pixel, needed);
+    } else {
+        lit = filtered(point, texel, to_light, footprint, pixel, true);
+    }
     // Weights sum to 1 but for rounding: what is all but lit or dark is.
-    lit = clamp((1.0 + 2.0 * kRounding) * lit - kRounding, 0.0, 1.0);
+    precise float rounded = (1.0 + 2.0 * kRounding) * lit - kRounding;
+    lit = clamp(rounded, 0.0, 1.0);
     // Maps that are chosen among by their axis hold all receivers, and so do the sun's; what the bias moves
     // across their border is looked up there.
     if (kLightKind == kLightDirectional || kLayerChoice == kChooseByAxis) return lit;
@@ -194,8 +247,10 @@ void main() {
         footprint = mat2(step_on_plane(texel, p_es, normal_ws, pixel + uvec2(1u, 0u), near_depth),
                          step_on_plane(texel, p_es, normal_ws, pixel + uvec2(0u, 1u), near_depth));
     }
-    float lit = lit_by_map(biased_es, texel, layer, to_light, footprint, pixel);
-    lit = faces_light(push.light, p_es, normal_ws) ? lit : 0.0;
+    bool faces = faces_light(push.light, p_es, normal_ws);
+    float known = depth > 0.0 ? (faces ? kNotProven : kProvenDark) : kProvenLit;
+    float lit = lit_by_map(biased_es, texel, layer, to_light, footprint, pixel, known);
+    lit = faces ? lit : 0.0;
     if (all(lessThan(pixel, push.size))) {
         imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));
     }

@@ -2,6 +2,7 @@
 
 #include "map_lookup.comp.spv.h"
 #include "visibility/light_shape.h"
+#include "visibility/map_bounds.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/vector_double4.hpp>
@@ -34,7 +35,7 @@ constexpr float kLeastDeviation = 2e-4f;
 gpu::ComputePipelineInfo lookup_info(std::vector<std::uint32_t> constants) {
     using enum gpu::BindingType;
     return {.code = shaders::map_lookup_comp,
-            .layout = {{texture, storage_image, storage_image, texture, uniform_buffer},
+            .layout = {{texture, storage_image, storage_image, texture, uniform_buffer, texture},
                        sizeof(shared::ReceiverPush)},
             .constants = std::move(constants)};
 }
@@ -155,7 +156,7 @@ MapLookup::MapLookup(const gpu::Device& device, const ReadingOptions& reading,
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
              gpu::Placement::device) {}
 
-LookupPipeline& MapLookup::pipeline(const LookupLayers& layers) {
+LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::uint32_t proof) {
     const bool affine = std::ranges::all_of(
         layers.layers, [](const LookupLayer& layer) { return layer.fit.affine; });
     const std::vector<std::uint32_t> constants{static_cast<std::uint32_t>(reading_.filter),
@@ -163,7 +164,8 @@ LookupPipeline& MapLookup::pipeline(const LookupLayers& layers) {
                                                static_cast<std::uint32_t>(reading_.filter_taps),
                                                static_cast<std::uint32_t>(layers.layers.size()),
                                                affine ? 1u : 0u,
-                                               static_cast<std::uint32_t>(layers.choice)};
+                                               static_cast<std::uint32_t>(layers.choice),
+                                               proof};
     LookupPipeline& pipeline = pipelines_[constants];
     if (!pipeline) pipeline = LookupPipeline(device_, lookup_info(constants));
     return pipeline;
@@ -171,7 +173,7 @@ LookupPipeline& MapLookup::pipeline(const LookupLayers& layers) {
 
 void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receivers,
                        const Light& light, const LookupLayers& lookup_layers, const gpu::Image& map,
-                       gpu::Image& visibility) {
+                       const MapBounds* bounds, gpu::Image& visibility) {
     const std::vector<LookupLayer>& layers = lookup_layers.layers;
     assert(!layers.empty() && layers.size() <= shared::kMaxMapLayers);
     shared::MapFrame frame{};
@@ -182,6 +184,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
                      .least_variance = kLeastDeviation * kLeastDeviation,
                      .bleeding = static_cast<float>(reading_.light_bleeding)};
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
+    frame.bounded_texels = bounds == nullptr ? Vec3(0) : bounds->reach_texels();
     frame.blend = static_cast<float>(lookup_layers.blend);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         frame.layers[i] = layer_frame(layers[i].fit, receivers.camera.eye_ws());
@@ -190,11 +193,15 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     }
     commands.update(frame_, frame);
     commands.use(visibility, gpu::Use::storage_write);
-    const gpu::Pipeline& lookup = pipeline(lookup_layers).of(light);
+    const std::uint32_t proof = bounds == nullptr ? shared::kProofNone
+                                : shows_proven_   ? shared::kProofShown
+                                                  : shared::kProofSkips;
+    const gpu::Pipeline& lookup = pipeline(lookup_layers, proof).of(light);
     commands.bind(
         lookup, {gpu::Texture{receivers.depth.view(), &nearest_},
                  gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},
-                 gpu::Texture{map.view(), &nearest_}, gpu::UniformBuffer{&frame_}});
+                 gpu::Texture{map.view(), &nearest_}, gpu::UniformBuffer{&frame_},
+                 gpu::Texture{(bounds == nullptr ? map : bounds->image()).view(), &nearest_}});
     commands.push(lookup, receiver_push(receivers, light));
     commands.dispatch(receivers.size, kGroupSize);
 }

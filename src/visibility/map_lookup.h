@@ -82,18 +82,27 @@ struct LookupLayers {
 /// Which layer a point is looked up in.
 std::size_t layer_of(const LookupLayers& layers, const Camera& camera, Vec3 p_ws);
 
+class MapBounds;
+
 /// Compares receivers with a map; what lies outside of a spot's map is lit.
 class MapLookup {
 public:
     MapLookup(const gpu::Device& device, const ReadingOptions& reading, const BiasOptions& bias);
 
+    /// `bounds`: of the map's tiles, where there are some; filters are skipped by them, which
+    /// changes no pixel.
     void record(gpu::Commands& commands, const raster::Receivers& receivers, const Light& light,
-                const LookupLayers& layers, const gpu::Image& map, gpu::Image& visibility);
+                const LookupLayers& layers, const gpu::Image& map, const MapBounds* bounds,
+                gpu::Image& visibility);
+
+    /// From now on, where there are bounds: 1 and 0 where they prove a receiver lit and dark, a
+    /// half where it is filtered.
+    void show_proven() { shows_proven_ = true; }
 
     std::uint64_t memory_bytes() const { return frame_.memory_bytes(); }
 
 private:
-    LookupPipeline& pipeline(const LookupLayers& layers);
+    LookupPipeline& pipeline(const LookupLayers& layers, std::uint32_t proof);
 
     const gpu::Device& device_;
     ReadingOptions reading_;
@@ -101,6 +110,7 @@ private:
     std::map<std::vector<std::uint32_t>, LookupPipeline> pipelines_;  // by constants
     gpu::Sampler nearest_;
     gpu::Buffer frame_;
+    bool shows_proven_ = false;
 };
 
 }  // namespace gnomon

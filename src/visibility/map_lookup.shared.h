@@ -10,7 +10,7 @@ namespace gnomon::shared {
 const uint kMaxMapLayers = 8u;
 
 // Specialization constants of map_lookup.comp.glsl, from 1: kFilter, kContent, kTaps, kLayerCount,
-// kAffine, kLayerChoice; of map_content.comp.glsl: kContent
+// kAffine, kLayerChoice, kProof; of map_content.comp.glsl: kContent
 
 const uint kFilterNearest = 0u;
 const uint kFilterHardware2x2 = 1u;
@@ -33,6 +33,15 @@ const uint kContentMoments = 7u;
 
 const uint kChooseByDistance = 0u;
 const uint kChooseByAxis = 1u;
+
+// What a map's bounds are for: nothing, to skip filters, or to show where they would be skipped.
+const uint kProofNone = 0u;
+const uint kProofSkips = 1u;
+const uint kProofShown = 2u;
+
+// Side of a tile, in texels. Of 8 up to a fifth more is proven, but bounds take up to twice as long
+// to make for a narrow filter, and six times as long for a wide one; of 32 up to a third less is.
+const uint kBoundsTile = 16u;
 
 /// By how much receivers are moved before they are looked up: map_bias.glsl.
 struct MapBias {
@@ -78,6 +87,9 @@ struct MapFrame {
     MapReadingFrame reading;
     float size_texels;
     float blend;  // LookupLayers::blend
+    // How far around a receiver the map's bounds hold, in texels: the narrowest, the next, which
+    // are without end where none are wider; and the widest.
+    vec3 bounded_texels;
 };
 
 struct MapContentPush {
@@ -85,6 +97,13 @@ struct MapContentPush {
     float exponent;
     uint layer;
     uint size;
+};
+
+struct MapBoundsPush {
+    uint layer;
+    uint size;
+    uint rings;         // of tiles around each that its bounds hold for too
+    uint bounds_layer;  // where these bounds go
 };
 
 struct MapBlurPush {
