@@ -1,6 +1,5 @@
 #include "visibility/content_map.h"
 
-#include "map_blur.comp.spv.h"
 #include "map_content.comp.spv.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
@@ -56,24 +55,20 @@ ContentMap::ContentMap(const gpu::Device& device, MapContent content, float expo
     : device_(device),
       content_(content),
       exponent_(exponent),
-      blur_texels_(is_blurred(content) ? blur_texels : 0.0f),
-      nearest_(device, {}) {
+      nearest_(device, {}),
+      blur_(device, is_blurred(content) ? blur_texels : 0.0f) {
     using enum gpu::BindingType;
     fill_ = gpu::Pipeline(device,
                           gpu::ComputePipelineInfo{
                               .code = shaders::map_content_comp,
                               .layout = {{texture, storage_image}, sizeof(shared::MapContentPush)},
                               .constants = {static_cast<std::uint32_t>(content)}});
-    blur_ = gpu::Pipeline(device,
-                          gpu::ComputePipelineInfo{
-                              .code = shaders::map_blur_comp,
-                              .layout = {{texture, storage_image}, sizeof(shared::MapBlurPush)}});
 }
 
 void ContentMap::record(gpu::Commands& commands, const gpu::Image& depths,
                         std::span<const LightFit> fits) {
     assert(depths.info().layers == fits.size());
-    make_images(depths);
+    make_image(depths);
     commands.use(image_, gpu::Use::storage_write);
     commands.bind(fill_,
                   {gpu::Texture{depths.view(), &nearest_}, gpu::StorageImage{image_.view()}});
@@ -84,38 +79,17 @@ void ContentMap::record(gpu::Commands& commands, const gpu::Image& depths,
                                                     .size = image_.size().width});
         commands.dispatch(image_.size(), kGroupSize);
     }
-    if (blur_texels_ > 0.0f) {
-        blur(commands, image_, between_, {1, 0});
-        blur(commands, between_, image_, {0, 1});
-    }
-    commands.use(image_, gpu::Use::sampled);
+    blur_.record(commands, image_);
 }
 
-void ContentMap::make_images(const gpu::Image& depths) {
+void ContentMap::make_image(const gpu::Image& depths) {
     if (image_ && image_.size() == depths.size() && image_.info().layers == depths.info().layers)
         return;
-    const gpu::ImageInfo info{.size = depths.size(),
-                              .format = format_of(content_),
-                              .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                              .layers = depths.info().layers,
-                              .array = true};
-    image_ = gpu::Image(device_, info);
-    if (blur_texels_ > 0.0f) between_ = gpu::Image(device_, info);
-}
-
-void ContentMap::blur(gpu::Commands& commands, gpu::Image& source, gpu::Image& target,
-                      glm::uvec2 step) {
-    commands.use(source, gpu::Use::sampled);
-    commands.use(target, gpu::Use::storage_write);
-    commands.bind(blur_,
-                  {gpu::Texture{source.view(), &nearest_}, gpu::StorageImage{target.view()}});
-    for (std::uint32_t layer = 0; layer < source.info().layers; ++layer) {
-        commands.push(blur_, shared::MapBlurPush{.step = step,
-                                                 .layer = layer,
-                                                 .size = source.size().width,
-                                                 .radius_texels = blur_texels_});
-        commands.dispatch(source.size(), kGroupSize);
-    }
+    image_ = gpu::Image(device_, {.size = depths.size(),
+                                  .format = format_of(content_),
+                                  .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                  .layers = depths.info().layers,
+                                  .array = true});
 }
 
 }  // namespace gnomon

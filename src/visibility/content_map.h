@@ -2,6 +2,7 @@
 
 #include "gpu/commands.h"
 #include "visibility/light_fit.h"
+#include "visibility/map_blur.h"
 #include "visibility/map_lookup.shared.h"
 
 #include <span>
@@ -39,18 +40,18 @@ public:
     void record(gpu::Commands& commands, const gpu::Image& depths, std::span<const LightFit> fits);
 
     const gpu::Image& image() const { return image_; }
-    std::uint64_t memory_bytes() const { return image_.memory_bytes() + between_.memory_bytes(); }
+    std::uint64_t memory_bytes() const { return image_.memory_bytes() + blur_.memory_bytes(); }
 
 private:
-    void make_images(const gpu::Image& depths);
-    void blur(gpu::Commands& commands, gpu::Image& source, gpu::Image& target, glm::uvec2 step);
+    void make_image(const gpu::Image& depths);
 
     const gpu::Device& device_;
     MapContent content_;
-    float exponent_, blur_texels_;
-    gpu::Pipeline fill_, blur_;
+    float exponent_;
+    gpu::Pipeline fill_;
     gpu::Sampler nearest_;
-    gpu::Image image_, between_;  // `between_`: blurred along one axis
+    MapBlur blur_;
+    gpu::Image image_;
 };
 
 }  // namespace gnomon
