@@ -1,5 +1,7 @@
 #include "visibility/seen.h"
 
+#include "visibility/light_view.h"
+
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/geometric.hpp>
 
@@ -112,6 +114,21 @@ Seen seen_part(const Camera& camera, Extent size, std::span<const Box3> boxes_ws
     }
     seen.range.near_m = std::max(seen.range.near_m, static_cast<double>(camera.near_m));
     return seen;
+}
+
+LightFit fit_to_seen(const Frame& frame, const Seen& seen, unsigned size_texels,
+                     float margin_texels) {
+    const Box3 bounds = frame.scene.bounds();
+    if (const auto* sun = std::get_if<DirectionalLight>(&frame.light)) {
+        return fit_directional(*sun,
+                               visible_corners(frame.camera, frame.size, seen.bounds, seen.range),
+                               bounds, size_texels, margin_texels);
+    }
+    const LightView view = spot_view(std::get<SpotLight>(frame.light));
+    const std::vector<DVec3> receivers_ws =
+        visible_corners(frame.camera, frame.size, seen.bounds, seen.range, view.planes());
+    return fit_view(receivers_ws.empty() ? view : fitted(view, receivers_ws), bounds, size_texels,
+                    margin_texels);
 }
 
 }  // namespace gnomon

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gnomon/visibility.h>
+
 #include "visibility/light_fit.h"
 
 #include <span>
@@ -30,5 +32,10 @@ Seen seen_part(const Camera& camera, Extent size, std::span<const Box3> boxes_ws
 
 /// All that is in the tiles.
 Seen seen_in(std::vector<SeenTile> tiles);
+
+/// The one map of the frame's light, a sun or a spot, around all receivers that are seen. Throws
+/// Error{input} as spot_view() does.
+LightFit fit_to_seen(const Frame& frame, const Seen& seen, unsigned size_texels,
+                     float margin_texels);
 
 }  // namespace gnomon

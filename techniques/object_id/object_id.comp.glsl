@@ -14,36 +14,13 @@ layout(set = 0, binding = 2, r32f) uniform writeonly image2D visibility;
 layout(set = 0, binding = 3, rg32ui) uniform readonly uimage2D receiver_ids;
 layout(set = 0, binding = 4) uniform sampler2D map_depths;
 layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D map_ids;
-layout(set = 0, binding = 6, scalar) uniform Frame { MapFrame frame; };
+layout(set = 0, binding = 6, scalar) uniform Frame { ObjectMapFrame frame; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
-const uint kNothing = 0xffffffffu;
+#include "visibility/object_map.glsl"
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
 const float kLeastDepth = 1e-12;
-
-// Does the texel's object leave light for the receiver's?
-bool lit_by_texel(ivec2 texel, uint object, float depth) {
-    uint nearest = imageLoad(map_ids, texel).x;
-    bool own = nearest == object || nearest == kNothing;
-    if (kCompare == kCompareIds) return own;
-    return own || texelFetch(map_depths, texel, 0).x <= depth;
-}
-
-// Of the four texels around a place one is the receiver's own if it is seen at all, wherever on its object's
-// rim it is: with ids alone it is lit by any of them. With depths their light is averaged.
-float lit_by_map(vec2 texel, uint object, float depth) {
-    vec2 corner = floor(texel - 0.5);
-    vec2 f = texel - 0.5 - corner;
-    ivec2 last = ivec2(frame.size_texels) - 1;
-    vec4 lit;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = clamp(ivec2(corner) + ivec2(i % 2, i / 2), ivec2(0), last);
-        lit[i] = lit_by_texel(at, object, depth) ? 1.0 : 0.0;
-    }
-    if (kCompare == kCompareIds) return max(max(lit.x, lit.y), max(lit.z, lit.w));
-    return mix(mix(lit.x, lit.y, f.x), mix(lit.z, lit.w, f.x), f.y);
-}
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -54,7 +31,9 @@ void main() {
     vec4 p = frame.clip_from_es * vec4(p_es, 1.0);
     vec3 p_ndc = p.xyz / p.w;
     uint object = imageLoad(receiver_ids, at).x;
-    float lit = lit_by_map(frame.size_texels * (0.5 * p_ndc.xy + 0.5), object, p_ndc.z);
+    vec2 texel = frame.size_texels * (0.5 * p_ndc.xy + 0.5);
+    float lit = kCompare == kCompareIds ? lit_by_ids(texel, object)
+                                        : lit_by_ids_and_depths(texel, object, p_ndc.z);
     bool inside = p.w > 0.0 && all(lessThanEqual(abs(p_ndc.xy), vec2(1.0)));
     lit = inside || kLightKind == kLightDirectional ? lit : 1.0;
     lit = faces_light(push.light, p_es, normal_ws) ? lit : 0.0;

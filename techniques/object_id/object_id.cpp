@@ -8,11 +8,9 @@
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
 #include "visibility/light_shape.h"
-#include "visibility/light_view.h"
 #include "visibility/lookup_pipeline.h"
+#include "visibility/object_map.h"
 #include "visibility/seen.h"
-
-#include <glm/ext/matrix_double4x4.hpp>
 
 namespace gnomon {
 
@@ -47,11 +45,8 @@ public:
     ObjectId(Context& context, const Options& options)
         : GpuTechnique(context, object_id_info()),
           options_(options),
-          draw_(context.impl().device()),
-          nearest_(context.impl().device(), {}),
-          frame_(context.impl().device(), sizeof(object_id::shared::MapFrame),
-                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                 gpu::Placement::device) {
+          map_(context.impl().device()),
+          nearest_(context.impl().device(), {}) {
         using enum gpu::BindingType;
         lookup_ = LookupPipeline(context.impl().device(),
                                  {.code = shaders::object_id_comp,
@@ -64,50 +59,27 @@ public:
 private:
     void record(gpu::Commands& commands, const RecordInput& input,
                 gpu::Image& visibility) override {
-        fit_ = fit_to(input);
-        const auto side = static_cast<unsigned>(options_.map_size);
+        const Frame& frame = input.frame;
+        fit_ = fit_to_seen(frame, seen_part(frame.camera, frame.size, input.scene.part_bounds_ws()),
+                           static_cast<unsigned>(options_.map_size), kMarginTexels);
         {
             const gpu::Pass pass(commands, "ids");
-            draw_.record(commands, input.scene, Mat4(fit_.clip_from_world), {side, side},
-                         input.frame.ignore_alpha, false, map_);
-            commands.use(map_.depth, gpu::Use::sampled);
-            commands.use(map_.ids, gpu::Use::storage_read);
+            map_.record(commands, input.scene, fit_, input.receivers.camera, frame.ignore_alpha);
         }
         const gpu::Pass pass(commands, "lookup");
         look_up(commands, input, visibility);
     }
 
-    LightFit fit_to(const RecordInput& input) const {
-        const Frame& frame = input.frame;
-        const Seen seen = seen_part(frame.camera, frame.size, input.scene.part_bounds_ws());
-        const auto side = static_cast<unsigned>(options_.map_size);
-        const Box3 bounds = frame.scene.bounds();
-        if (const auto* sun = std::get_if<DirectionalLight>(&frame.light)) {
-            return fit_directional(
-                *sun, visible_corners(frame.camera, frame.size, seen.bounds, seen.range), bounds,
-                side, kMarginTexels);
-        }
-        const LightView view = spot_view(std::get<SpotLight>(frame.light));
-        const std::vector<DVec3> receivers_ws =
-            visible_corners(frame.camera, frame.size, seen.bounds, seen.range, view.planes());
-        return fit_view(receivers_ws.empty() ? view : fitted(view, receivers_ws), bounds, side,
-                        kMarginTexels);
-    }
-
     void look_up(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) {
-        glm::dmat4 clip = fit_.clip_from_world;
-        clip[3] = clip * glm::dvec4(DVec3(input.receivers.camera.eye_ws()), 1.0);
-        commands.update(frame_, object_id::shared::MapFrame{
-                                    .clip_from_es = Mat4(clip),
-                                    .size_texels = static_cast<float>(options_.map_size)});
         commands.use(visibility, gpu::Use::storage_write);
         const gpu::Pipeline& lookup = lookup_.of(input.frame.light);
-        commands.bind(lookup, {gpu::Texture{input.receivers.depth.view(), &nearest_},
-                               gpu::StorageImage{input.receivers.normals.view()},
-                               gpu::StorageImage{visibility.view()},
-                               gpu::StorageImage{input.receivers.ids.view()},
-                               gpu::Texture{map_.depth.view(), &nearest_},
-                               gpu::StorageImage{map_.ids.view()}, gpu::UniformBuffer{&frame_}});
+        commands.bind(
+            lookup,
+            {gpu::Texture{input.receivers.depth.view(), &nearest_},
+             gpu::StorageImage{input.receivers.normals.view()},
+             gpu::StorageImage{visibility.view()}, gpu::StorageImage{input.receivers.ids.view()},
+             gpu::Texture{map_.depths().view(), &nearest_}, gpu::StorageImage{map_.ids().view()},
+             gpu::UniformBuffer{&map_.frame()}});
         commands.push(lookup, receiver_push(input.receivers, input.frame.light));
         commands.dispatch(input.frame.size, kGroupSize);
     }
@@ -118,17 +90,13 @@ private:
                        frame);
     }
 
-    std::uint64_t memory_bytes() const override {
-        return map_.depth.memory_bytes() + map_.ids.memory_bytes() + frame_.memory_bytes();
-    }
+    std::uint64_t memory_bytes() const override { return map_.memory_bytes(); }
 
     Options options_;
-    raster::IdPass draw_;
-    raster::SeenIds map_;
+    ObjectMap map_;
     LightFit fit_;
     LookupPipeline lookup_;
     gpu::Sampler nearest_;
-    gpu::Buffer frame_;
 };
 
 }  // namespace

@@ -29,10 +29,8 @@ private:
         if (const auto* spot = std::get_if<SpotLight>(&frame.light)) {
             return {.layers = {local_layer(frame, seen, spot_view(*spot), true)}};
         }
-        const auto& light = std::get<DirectionalLight>(frame.light);
-        const LightFit fit = fit_directional(
-            light, visible_corners(frame.camera, frame.size, seen.bounds, seen.range),
-            frame.scene.bounds(), options_.size_texels(), options_.margin_texels());
+        const LightFit fit =
+            fit_to_seen(frame, seen, options_.size_texels(), options_.margin_texels());
         return {.layers = {directional_layer(frame, seen, fit, seen.range)}};
     }
 
