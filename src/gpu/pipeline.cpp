@@ -66,6 +66,17 @@ VkPipelineDepthStencilStateCreateInfo depth_stencil(const GraphicsPipelineInfo& 
             .back = back};
 }
 
+VkPipelineColorBlendAttachmentState color_blend(bool adds) {
+    return {.blendEnable = adds ? VK_TRUE : VK_FALSE,
+            .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstColorBlendFactor = VK_BLEND_FACTOR_ONE,
+            .colorBlendOp = VK_BLEND_OP_ADD,
+            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+            .alphaBlendOp = VK_BLEND_OP_ADD,
+            .colorWriteMask = 0xf};
+}
+
 // What all graphics pipelines have alike.
 constexpr VkPipelineInputAssemblyStateCreateInfo kAssembly{
     .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
@@ -165,8 +176,8 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info) : Pip
         .polygonMode = VK_POLYGON_MODE_FILL,
         .lineWidth = 1.0f};
     const VkPipelineDepthStencilStateCreateInfo depth = depth_stencil(info);
-    const std::vector<VkPipelineColorBlendAttachmentState> attachments(info.color_formats.size(),
-                                                                       {.colorWriteMask = 0xf});
+    const std::vector<VkPipelineColorBlendAttachmentState> attachments(
+        info.color_formats.size(), color_blend(info.add_colors));
     const VkPipelineColorBlendStateCreateInfo blend{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
         .attachmentCount = static_cast<std::uint32_t>(attachments.size()),

@@ -33,6 +33,7 @@ struct GraphicsPipelineInfo {
     bool depth_write = true;
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  ///< reversed Z
     bool depth_clamp = false;
+    bool add_colors = false;  ///< to what is in the colour targets; else they are replaced
     /// Stencil counted by depth fail, wrapping: front faces down, back faces up.
     bool stencil_count_depth_fail = false;
 };
