@@ -25,6 +25,7 @@ RECT = "--light rect:center=1.5,3,1,u=0.5,0,0,v=0,0,0.5"
 MAP = "--technique shadow_map"
 NO_BIAS = ("--shadow_map.receiver_plane false --shadow_map.bias_constant 0 --shadow_map.bias_slope 0 "
            "--shadow_map.normal_offset 0 --shadow_map.caster_error 0")
+BLURRED = "--technique blurred_projection --blurred_projection.blur 8"
 FINE = "--shadow_map.map_size 4096"
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
@@ -51,6 +52,10 @@ PICTURES = {
         f"field-small --technique object_id --object_id.map_size 1024 --object_id.compare {compare}"
         for compare in ("ids", "ids_and_depths")]),
     "object_id-fails": ("1280x720", (480, 120, 960, 420), 2, ["courtyard", "courtyard --technique object_id"]),
+    "blurred_projection": ("1280x720", (560, 380, 900, 500), 3, [
+        "courtyard", f"courtyard {BLURRED}", f"courtyard {MAP} --shadow_map.content variance --shadow_map.blur 8"]),
+    "blurred_projection-self": ("1280x720", (630, 440, 850, 550), 2, ["courtyard", f"courtyard {BLURRED}"]),
+    "blurred_projection-fails": ("1280x720", (480, 370, 1040, 480), 1, ["field-small", f"field-small {BLURRED}"]),
     "omni": ("1280x720", (640, 420, 960, 600), 3, [
         "torches", "torches --technique omni", "torches --technique omni --omni.projection tetrahedral"]),
     "psm-suns": ("1280x720", (470, 300, 710, 440), 4, [
