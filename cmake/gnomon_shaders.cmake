@@ -1,11 +1,12 @@
 # gnomon_shaders(<target>)
 #
-# Compiles each entry point of the folder (*.vert.glsl, *.frag.glsl, *.comp.glsl) and makes it an array of SPIR-V words in <name.stage.spv.h>:
+# Compiles each entry point of the folder (*.vert.glsl, *.tesc.glsl, *.tese.glsl, *.frag.glsl, *.comp.glsl) and makes it an array of
+# SPIR-V words in <name.stage.spv.h>:
 #     namespace gnomon::shaders { inline constexpr std::uint32_t name_stage[] = {...}; }
 # To be called in the folder of <target>, because CMake sees custom commands only there.
 function(gnomon_shaders target)
     file(GLOB sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" "*.vert.glsl"
-         "*.frag.glsl" "*.comp.glsl")
+         "*.tesc.glsl" "*.tese.glsl" "*.frag.glsl" "*.comp.glsl")
     set(out "${CMAKE_CURRENT_BINARY_DIR}/shaders")
     file(MAKE_DIRECTORY "${out}")  # glslc can fail to write into a missing folder and still exit 0
     set(headers)

@@ -60,6 +60,11 @@ void Device::create(const Candidate& candidate) {
         .shaderOutputLayer = optional_.layered_output ? VK_TRUE : VK_FALSE};
     VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                        .pNext = &v12};
+    VkPhysicalDeviceFeatures offered;
+    vkGetPhysicalDeviceFeatures(physical_, &offered);
+    tessellates_ = offered.tessellationShader == VK_TRUE && offered.shaderClipDistance == VK_TRUE;
+    features.features.tessellationShader = tessellates_ ? VK_TRUE : VK_FALSE;
+    features.features.shaderClipDistance = tessellates_ ? VK_TRUE : VK_FALSE;
     features.features.depthClamp = VK_TRUE;
     features.features.geometryShader = VK_TRUE;
     features.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;

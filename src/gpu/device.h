@@ -72,6 +72,8 @@ public:
     const DeviceInfo& info() const { return info_; }
     const OptionalFeatures& optional() const { return optional_; }
     const VkPhysicalDeviceLimits& limits() const { return limits_; }
+    /// Whether pipelines may have tessellation stages, and clip distances.
+    bool tessellates() const { return tessellates_; }
     std::vector<std::string> validation_messages() const { return instance_.messages(); }
 
     /// Index of a memory type of `allowed` with all `flags`, or -1.
@@ -88,6 +90,7 @@ private:
     DeviceInfo info_;
     OptionalFeatures optional_;
     VkPhysicalDeviceLimits limits_{};
+    bool tessellates_ = false;
     VkPhysicalDeviceMemoryProperties memory_{};
 };
 

@@ -140,6 +140,8 @@ DeviceInfo describe(VkPhysicalDevice device) {
         {"sparse images", features.features.sparseBinding == VK_TRUE},
         {"multiview", v11.multiview == VK_TRUE},
         {"layered output from vertex shaders", v12.shaderOutputLayer == VK_TRUE},
+        {"tessellation", features.features.tessellationShader == VK_TRUE &&
+                             features.features.shaderClipDistance == VK_TRUE},
         {"stencil export", has_extension(device, VK_EXT_SHADER_STENCIL_EXPORT_EXTENSION_NAME)},
     };
     return info;

@@ -3,6 +3,8 @@
 #include "base/check.h"
 
 #include <array>
+#include <cassert>
+#include <memory>
 #include <utility>
 
 namespace gnomon::gpu {
@@ -77,10 +79,49 @@ VkPipelineColorBlendAttachmentState color_blend(bool adds) {
             .colorWriteMask = 0xf};
 }
 
-// What all graphics pipelines have alike.
-constexpr VkPipelineInputAssemblyStateCreateInfo kAssembly{
+/// The stages of a graphics pipeline, for as long as it is being made.
+class GraphicsStages {
+public:
+    GraphicsStages(const Device& device, const GraphicsPipelineInfo& info) {
+        assert(info.tessellation_control.empty() == info.tessellation_evaluation.empty());
+        add(device, VK_SHADER_STAGE_VERTEX_BIT, info.vertex);
+        add(device, VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, info.tessellation_control);
+        add(device, VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, info.tessellation_evaluation);
+        add(device, VK_SHADER_STAGE_FRAGMENT_BIT, info.fragment);
+    }
+
+    /// Which of them there are.
+    static VkShaderStageFlags flags(const GraphicsPipelineInfo& info) {
+        constexpr VkShaderStageFlags kDrawing =
+            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+        constexpr VkShaderStageFlags kTessellation =
+            VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT | VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT;
+        return info.tessellation_control.empty() ? kDrawing : kDrawing | kTessellation;
+    }
+
+    const std::vector<VkPipelineShaderStageCreateInfo>& infos() const { return infos_; }
+
+private:
+    void add(const Device& device, VkShaderStageFlagBits stage,
+             std::span<const std::uint32_t> code) {
+        if (code.empty()) return;
+        modules_.push_back(std::make_unique<ShaderModule>(device, code));
+        infos_.push_back(modules_.back()->stage(stage));
+    }
+
+    std::vector<std::unique_ptr<ShaderModule>> modules_;
+    std::vector<VkPipelineShaderStageCreateInfo> infos_;
+};
+
+// What all graphics pipelines have alike, or all with and all without tessellation.
+constexpr VkPipelineInputAssemblyStateCreateInfo kTriangles{
     .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
     .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+constexpr VkPipelineInputAssemblyStateCreateInfo kPatches{
+    .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+    .topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST};
+constexpr VkPipelineTessellationStateCreateInfo kTessellation{
+    .sType = VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO, .patchControlPoints = 3};
 constexpr VkPipelineViewportStateCreateInfo kViewport{
     .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
     .viewportCount = 1,
@@ -151,14 +192,11 @@ Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info) : Pipe
 Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info) : Pipeline() {
     device_ = &device;
     bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    stages_ = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    stages_ = GraphicsStages::flags(info);
     layout_info_ = info.layout;
     make_layout();
-    const ShaderModule vertex(device, info.vertex);
-    const bool has_fragment = !info.fragment.empty();
-    const ShaderModule fragment(device, has_fragment ? info.fragment : info.vertex);
-    const std::array stages = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT),
-                               fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
+    const GraphicsStages stages(device, info);
+    const bool tessellates = !info.tessellation_control.empty();
     const std::array<VkVertexInputBindingDescription, 2> bindings{
         {{0, info.vertex_stride, VK_VERTEX_INPUT_RATE_VERTEX},
          {1, info.instance_stride, VK_VERTEX_INPUT_RATE_INSTANCE}}};
@@ -192,10 +230,11 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info) : Pip
     const VkGraphicsPipelineCreateInfo create{
         .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
         .pNext = &rendering,
-        .stageCount = has_fragment ? 2u : 1u,
-        .pStages = stages.data(),
+        .stageCount = static_cast<std::uint32_t>(stages.infos().size()),
+        .pStages = stages.infos().data(),
         .pVertexInputState = &input,
-        .pInputAssemblyState = &kAssembly,
+        .pInputAssemblyState = tessellates ? &kPatches : &kTriangles,
+        .pTessellationState = tessellates ? &kTessellation : nullptr,
         .pViewportState = &kViewport,
         .pRasterizationState = &raster,
         .pMultisampleState = &kMultisample,

@@ -24,6 +24,8 @@ struct ComputePipelineInfo {
 struct GraphicsPipelineInfo {
     std::span<const std::uint32_t> vertex;
     std::span<const std::uint32_t> fragment;  ///< empty = depth only
+    /// Both or neither: triangles are patches of three corners (Device::tessellates).
+    std::span<const std::uint32_t> tessellation_control = {}, tessellation_evaluation = {};
     PipelineLayoutInfo layout;
     std::vector<VkFormat> color_formats;
     VkFormat depth_format = VK_FORMAT_UNDEFINED;
