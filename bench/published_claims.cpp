@@ -5,7 +5,7 @@
 // taps: 4 dithered taps beside 16 (GPU Gems 2004, chapter 11). perspective: perspective maps beside
 // uniform ones, near and far, under suns overhead and head-on, unit-cube clipping on and off
 // (chapter 14), and LiSPSM and TSM. splits: the article's table of parallel splits, maps and times.
-// cube: what a lamp's map costs by its content (chapter 12).
+// cube: what a lamp's map costs by its content (chapter 12), and what two paraboloids cost.
 
 #include <gnomon/gnomon.h>
 
@@ -171,6 +171,9 @@ void cube(Context& context) {
     all.push_back(
         {"depth, disc of 4", "omni", {{"filter", "disc"}, {"filter_taps", 4}}, {}, {}, {}});
     all.push_back({"depth, disc of 16", "omni", {{"filter", "disc"}}, {}, {}, {}});
+    all.push_back({"paraboloids, 1024", "dual_paraboloid", {{"map_size", 1024}}, {}, {}, {}});
+    all.push_back({"paraboloids, 2048", "dual_paraboloid", {}, {}, {}, {}});
+    all.push_back({"not subdivided", "dual_paraboloid", {{"subdivide", false}}, {}, {}, {}});
     race(context, frame, all, [&](const Contestant& c, const Visibility& visibility) {
         const double mib = static_cast<double>(c.made->last_render().memory_bytes) / (1 << 20);
         fmt::print("{:18} {:5.0f} MiB {:6.1f} ms  RMSE {:.4f}\n", c.label, mib, median(c.total_ms),

@@ -135,14 +135,17 @@ TEST_P(BuiltinScene, SplitsHaveNoArtefactsUnderOtherSuns) {
     }
 }
 
-// Lamps: a cube, a tetrahedron, and perspective cubes.
+// Lamps: a cube, a tetrahedron, perspective cubes, and two paraboloids.
 TEST_P(BuiltinScene, MapsOfLampsHaveNoArtefacts) {
     const Scene scene = make_builtin_scene(GetParam());
     if (!std::holds_alternative<PointLight>(scene.lights().at(0))) {
         GTEST_SKIP() << GetParam() << " has no lamp first";
     }
-    for (const auto& [technique, params] : std::vector<std::pair<std::string, Params>>{
-             {"omni", {}}, {"omni", {{"projection", "tetrahedral"}}}, {"psm", {}}}) {
+    for (const auto& [technique, params] :
+         std::vector<std::pair<std::string, Params>>{{"omni", {}},
+                                                     {"omni", {{"projection", "tetrahedral"}}},
+                                                     {"psm", {}},
+                                                     {"dual_paraboloid", {}}}) {
         const Judged judged =
             judge(builtin_frame(scene, scene.lights()[0], false), technique, params);
         EXPECT_LE(judged.error.artefact_shadow, 0.0003) << technique;

@@ -173,7 +173,8 @@ TEST_P(Contract, ShadowsAreWhereTheTruthHasThem) {
             EXPECT_GT(error.pixels, 1000u);
             EXPECT_EQ(error.artefact_lit, 0.0);
             // Known failure: the one pixel at the very foot of the box, as degenerate_test tells.
-            const std::size_t at_creases = info().name == "omni" ? 1 : 0;
+            const std::size_t at_creases =
+                info().name == "omni" || info().name == "dual_paraboloid" ? 1 : 0;
             EXPECT_LE(error.artefact_shadow * static_cast<double>(error.pixels),
                       static_cast<double>(at_creases) + 0.5);
         }

@@ -22,6 +22,7 @@ GAP_PX = 6
 COLOURS = 256  # of a picture's palette, so that a file stays small
 
 RECT = "--light rect:center=1.5,3,1,u=0.5,0,0,v=0,0,0.5"
+NEAR = "--light point:position=0.2,1.3,0.1"
 MAP = "--technique shadow_map"
 NO_BIAS = ("--shadow_map.receiver_plane false --shadow_map.bias_constant 0 --shadow_map.bias_slope 0 "
            "--shadow_map.normal_offset 0 --shadow_map.caster_error 0")
@@ -58,6 +59,9 @@ PICTURES = {
     "blurred_projection-fails": ("1280x720", (480, 370, 1040, 480), 1, ["field-small", f"field-small {BLURRED}"]),
     "omni": ("1280x720", (640, 420, 960, 600), 3, [
         "torches", "torches --technique omni", "torches --technique omni --omni.projection tetrahedral"]),
+    "dual_paraboloid": ("640x360", (60, 60, 580, 360), 3, [
+        f"cube {NEAR}", f"cube {NEAR} --technique dual_paraboloid",
+        f"cube {NEAR} --technique dual_paraboloid --dual_paraboloid.subdivide false"]),
     "psm-suns": ("1280x720", (470, 300, 710, 440), 4, [
         f"field-small --light sun:{light}{technique}"
         for light in ("elevation=85,azimuth=0", "elevation=30,azimuth=180", "elevation=30,azimuth=90", "elevation=30,azimuth=0")
