@@ -1,6 +1,6 @@
 #include "visibility/light_fit.h"
 
-#include "visibility/smallest_rectangle.h"
+#include "base/smallest_rectangle.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/matrix_transform.hpp>

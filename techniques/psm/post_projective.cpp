@@ -5,7 +5,7 @@
 
 #include "post_projective.h"
 
-#include "visibility/smallest_rectangle.h"
+#include "base/smallest_rectangle.h"
 
 #include <glm/ext/vector_double2.hpp>
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-#include "visibility/smallest_rectangle.h"
+#include "base/smallest_rectangle.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "visibility/smallest_rectangle.h"
+#include "base/smallest_rectangle.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
