@@ -46,11 +46,12 @@ struct Material {
 /// Triangles of one material in their own space. Optional streams are empty or one per position.
 struct Mesh {
     std::string name;
-    std::vector<Vec3> positions;   ///< metres
-    std::vector<Vec3> normals;     ///< unit vectors for shading
-    std::vector<Vec2> texcoords;   ///< those that the material's texture uses; (0, 0) = top left
-    std::vector<Vec4> colors;      ///< linear RGBA; multiplies the material's base colour
-    std::vector<UVec3> triangles;  ///< counter-clockwise seen from the front
+    std::vector<Vec3> positions;  ///< metres
+    std::vector<Vec3> normals;    ///< unit vectors for shading
+    std::vector<Vec2> texcoords;  ///< those that the material's texture uses; (0, 0) = top left
+    std::vector<Vec2> lightmap_texcoords;  ///< TEXCOORD_1 of a file: each surface point's own place
+    std::vector<Vec4> colors;              ///< linear RGBA; multiplies the material's base colour
+    std::vector<UVec3> triangles;          ///< counter-clockwise seen from the front
     std::uint32_t material = 0;
 };
 

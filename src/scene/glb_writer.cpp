@@ -270,6 +270,9 @@ private:
         if (!mesh.texcoords.empty()) {
             json["attributes"]["TEXCOORD_0"] = add_accessor(mesh.texcoords, "VEC2");
         }
+        if (!mesh.lightmap_texcoords.empty()) {
+            json["attributes"]["TEXCOORD_1"] = add_accessor(mesh.lightmap_texcoords, "VEC2");
+        }
         if (!mesh.colors.empty()) {
             json["attributes"]["COLOR_0"] = add_accessor(mesh.colors, "VEC4");
         }

@@ -191,6 +191,8 @@ Scene sampler() {
     sheet.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 0.5f}};
     Mesh cube = scene::box(Vec3(-1.0f), Vec3(1.0f));
     cube.material = 1;
+    for (const Vec3 p : cube.positions)
+        cube.lightmap_texcoords.emplace_back(0.5f + 0.25f * p.x, 0.5f + 0.125f * p.z);
     data.meshes = {sheet, cube, Mesh{}};
     const Mat4 place = scene::translation({1, 2, 3}) * scene::rotation_y(0.3f);
     data.instances = {{.mesh = 0, .object = 0, .world_from_local = place, .name = "pair"},
@@ -241,6 +243,7 @@ void expect_same_meshes(const Scene& a, const Scene& b) {
         if (a.materials()[left_mesh.material].base_color_texture >= 0) {
             EXPECT_EQ(left_mesh.texcoords, right_mesh.texcoords) << left.name;
         }
+        EXPECT_EQ(left_mesh.lightmap_texcoords, right_mesh.lightmap_texcoords) << left.name;
         EXPECT_EQ(left_mesh.colors, right_mesh.colors) << left.name;
         EXPECT_EQ(left_mesh.triangles, right_mesh.triangles) << left.name;
         EXPECT_EQ(left_mesh.normals.size(), right_mesh.normals.size()) << left.name;

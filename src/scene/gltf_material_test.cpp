@@ -79,6 +79,21 @@ TEST(GltfMaterial, TextureCoordinatesAreThoseThatTheTextureAsksFor) {
     EXPECT_EQ(load_with_picture(gltf, kHalfTransparent).meshes().at(0).texcoords[1], Vec2(10, 0));
 }
 
+TEST(GltfMaterial, SetOneIsTheLightMapsWithAndWithoutATexture) {
+    const std::vector<Vec2> set_one = {{0, 0}, {10, 0}, {0, 10}};
+    for (const json& material : {json::object(), with_texture(json::object())}) {
+        TestGltf gltf = textured_triangle(material);
+        EXPECT_EQ(load_with_picture(gltf, kHalfTransparent).meshes().at(0).lightmap_texcoords,
+                  set_one);
+    }
+    TestGltf damaged = textured_triangle(json::object());
+    damaged.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+        damaged.floats("VEC2", 2, {NAN, 0, 10, 0, 0, 10});
+    const Scene scene = load_with_picture(damaged, kHalfTransparent);
+    EXPECT_EQ(scene.meshes().at(0).lightmap_texcoords[0], Vec2(0.0f));
+    EXPECT_TRUE(has_warning(scene, "not finite"));
+}
+
 TEST(GltfMaterial, TextureTransformScalesTurnsAndMoves) {
     const json transform{
         {"offset", {0.25, 0.5}}, {"scale", {2, 3}}, {"rotation", kPi / 2}, {"texCoord", 1}};

@@ -143,6 +143,7 @@ Mesh read_primitive(GltfDocument& document, const tinygltf::Primitive& primitive
     const auto& attributes = primitive.attributes;
     mesh.normals = read_stream<Vec3>(document, attributes, "NORMAL", mesh, warnings);
     mesh.colors = read_colors(document, primitive, mesh, warnings);
+    mesh.lightmap_texcoords = read_stream<Vec2>(document, attributes, "TEXCOORD_1", mesh, warnings);
     if (texcoord_set >= 0) {
         const std::string attribute = fmt::format("TEXCOORD_{}", texcoord_set);
         mesh.texcoords = read_stream<Vec2>(document, attributes, attribute, mesh, warnings);

@@ -13,7 +13,8 @@ namespace gnomon::scene {
 
 /// One primitive, not yet repaired: triangles from any of glTF's modes, its streams, moved by the
 /// morph targets. Without triangles when the primitive has points, lines or no positions.
-/// `texcoord_set`: n of the TEXCOORD_n to read, -1 = none. The mesh's material is not set.
+/// `texcoord_set`: n of the TEXCOORD_n that the texture uses, -1 = none; TEXCOORD_1 is read as the
+/// light map's besides. The mesh's material is not set.
 Mesh read_primitive(GltfDocument& document, const tinygltf::Primitive& primitive,
                     const std::string& name, std::span<const double> morph_weights,
                     int texcoord_set, Warnings& warnings);

@@ -62,10 +62,12 @@ bool finite(float v) {
 
 void repair_texcoords(Mesh& mesh, Warnings& warnings) {
     std::size_t faulty = 0;
-    for (Vec2& uv : mesh.texcoords) {
-        if (finite(uv.x) && finite(uv.y)) continue;
-        uv = Vec2(0.0f);
-        ++faulty;
+    for (std::vector<Vec2>* set : {&mesh.texcoords, &mesh.lightmap_texcoords}) {
+        for (Vec2& uv : *set) {
+            if (finite(uv.x) && finite(uv.y)) continue;
+            uv = Vec2(0.0f);
+            ++faulty;
+        }
     }
     if (faulty > 0) {
         warnings.add("texture coordinates that are not finite become 0", mesh.name, faulty);

@@ -24,6 +24,7 @@ void require_stream(const Mesh& mesh, std::string_view stream, const std::vector
 void validate_mesh(const Mesh& mesh, const SceneData& data) {
     require_stream(mesh, "normals", mesh.normals);
     require_stream(mesh, "texcoords", mesh.texcoords);
+    require_stream(mesh, "lightmap_texcoords", mesh.lightmap_texcoords);
     require_stream(mesh, "colors", mesh.colors);
     if (mesh.material >= data.materials.size()) {
         fail_input("mesh \"{}\": material {} of {}", mesh.name, mesh.material,

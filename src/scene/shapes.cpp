@@ -337,6 +337,7 @@ void append(Mesh& mesh, const Mesh& part) {
     };
     add(mesh.normals, part.normals);
     add(mesh.texcoords, part.texcoords);
+    add(mesh.lightmap_texcoords, part.lightmap_texcoords);
     add(mesh.colors, part.colors);
     mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
     for (const UVec3 t : part.triangles)
