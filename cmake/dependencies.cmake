@@ -19,6 +19,7 @@ endif()
 find_path(VOLK_INCLUDE_DIR volk.h REQUIRED)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(TINYOBJLOADER_INCLUDE_DIR tiny_obj_loader.h REQUIRED)
+find_path(STB_INCLUDE_DIR stb_rect_pack.h PATH_SUFFIXES stb REQUIRED)
 find_program(GLSLC glslc REQUIRED)
 
 if(NOT TARGET glm::glm)

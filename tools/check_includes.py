@@ -25,6 +25,7 @@ MODULES = {
     "image": IMAGE,
     "scene": SCENE,
     "sun": SUN,
+    "lightmap": SCENE | {"lightmap"},
     "trace": SCENE | {"trace"},
     "gpu": GPU,
     "raster": SCENE | GPU | {"raster"},
@@ -53,7 +54,7 @@ PUBLIC = {
 # Third-party headers that only some modules may see.
 RESERVED = [
     (re.compile(r"embree\d?/"), "Embree", {"trace"}),
-    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - SUN - {"trace"}),
+    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - SUN - {"trace", "lightmap"}),
     (re.compile(r"erfa"), "ERFA", {"sun"}),
 ]
 
