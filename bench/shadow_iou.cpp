@@ -13,6 +13,7 @@
 
 #include "base/check.h"
 #include "bench_main.h"
+#include "engine_view.h"
 #include "visibility/context_impl.h"
 
 #include <fmt/format.h>
@@ -22,14 +23,12 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 namespace gnomon {
 namespace {
 
-constexpr Extent kSize{1920, 1080};
 constexpr float kLeastCosine = 0.08f;
 constexpr int kFrames = 7;
 
@@ -43,7 +42,7 @@ Frame frame_of(const Scene& scene, const nlohmann::json& view) {
                             radians(view.at("fovy_deg").get<float>()));
     camera.near_m = view.at("near");
     const DirectionalLight light{.to_light_ws = normalize(vector(view, "to_sun"))};
-    return {.scene = scene, .camera = camera, .light = light, .size = kSize};
+    return {.scene = scene, .camera = camera, .light = light, .size = kEngineView};
 }
 
 double iou_percent(const std::vector<trace::Receiver>& receivers, const Frame& frame,
@@ -64,23 +63,9 @@ double iou_percent(const std::vector<trace::Receiver>& receivers, const Frame& f
            static_cast<double>(std::max<std::size_t>(either, 1));
 }
 
-std::unique_ptr<Technique> make(Context& context, const std::string& spec) {
-    std::istringstream words(spec);
-    std::string name;
-    words >> name;
-    const TechniqueInfo& info = find_technique(name);
-    Params params;
-    for (std::string word; words >> word;) {
-        const std::size_t equals = word.find('=');
-        const ParamInfo& param = find_param(name, info.params(), word.substr(0, equals));
-        params.set(param.name, parse_param(name, param, word.substr(equals + 1)));
-    }
-    return make_technique(context, name, params);
-}
-
 void judge(Context& context, const Frame& frame, const Image& truth, const std::string& spec) {
     Progress silent;
-    const std::unique_ptr<Technique> technique = make(context, spec);
+    const std::unique_ptr<Technique> technique = technique_of(context, spec);
     Visibility found = technique->render(frame);
     std::vector<double> total_ms;
     std::map<std::string, std::vector<double>> passes_ms;

@@ -210,7 +210,8 @@ void Commands::begin_drawing(const Targets& targets) {
     }
     const bool all_layers = targets.depth != nullptr && targets.depth_layer < 0;
     const std::uint32_t layers = all_layers ? targets.depth->info().layers : 1;
-    const VkRect2D area{{0, 0}, {targets.size.width, targets.size.height}};
+    const VkRect2D area =
+        targets.area.value_or(VkRect2D{{0, 0}, {targets.size.width, targets.size.height}});
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                .renderArea = area,
                                .layerCount = layers,
@@ -300,11 +301,13 @@ void Commands::update(Buffer& target, std::span<const std::byte> bytes, Use next
 
 namespace {
 
+VkImageAspectFlags copied_aspect(const Image& image) {
+    return (image.aspects() & VK_IMAGE_ASPECT_DEPTH_BIT) != 0 ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                              : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
 VkBufferImageCopy whole_image(const Image& image) {
-    const VkImageAspectFlags aspect = (image.aspects() & VK_IMAGE_ASPECT_DEPTH_BIT) != 0
-                                          ? VK_IMAGE_ASPECT_DEPTH_BIT
-                                          : VK_IMAGE_ASPECT_COLOR_BIT;
-    return {.imageSubresource = {aspect, 0, 0, image.info().layers},
+    return {.imageSubresource = {copied_aspect(image), 0, 0, image.info().layers},
             .imageExtent = {image.size().width, image.size().height, 1}};
 }
 
@@ -320,6 +323,17 @@ void Commands::copy(const Image& source, const Buffer& target) {
     const VkBufferImageCopy region = whole_image(source);
     vkCmdCopyImageToBuffer(handle_, source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                            target.handle(), 1, &region);
+}
+
+void Commands::copy(const Image& source, LayerPlace from, const Image& target, LayerPlace to,
+                    Extent size) {
+    const VkImageCopy region{.srcSubresource = {copied_aspect(source), 0, from.layer, 1},
+                             .srcOffset = {from.offset.x, from.offset.y, 0},
+                             .dstSubresource = {copied_aspect(target), 0, to.layer, 1},
+                             .dstOffset = {to.offset.x, to.offset.y, 0},
+                             .extent = {size.width, size.height, 1}};
+    vkCmdCopyImage(handle_, source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(),
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
 }
 
 Submission::Submission(const Device& device) : device_(device), timer_(device) {

@@ -3,6 +3,7 @@
 #include "gpu/pipeline.h"
 
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,12 +30,19 @@ struct UniformBuffer {
 };
 using Binding = std::variant<StorageBuffer, UniformBuffer, StorageImage, Texture>;
 
+/// A place in a layer of an image, in texels.
+struct LayerPlace {
+    unsigned layer = 0;
+    VkOffset2D offset{};
+};
+
 /// Where drawing goes, and what is there before.
 struct Targets {
     std::vector<const Image*> colors;
     const Image* depth = nullptr;
     int depth_layer = -1;  ///< of an array; -1: all layers, among which vertex shaders choose
     Extent size;
+    std::optional<VkRect2D> area;  ///< all that is cleared and drawn into; else all of it
     bool clear_colors = true;
     bool clear_depth = true;     ///< to 0, the far plane of reversed Z
     bool clear_stencil = false;  ///< to 0
@@ -83,7 +91,8 @@ public:
     void begin_pass(std::string_view name);
     void end_pass();
 
-    /// The targets must be in use as such. Viewport and scissor cover `targets.size`; nothing is
+    /// The targets must be in use as such. The viewport covers `targets.size`, the scissor what
+    /// of it is drawn into; nothing is
     /// culled; counter-clockwise faces are front faces.
     void begin_drawing(const Targets& targets);
     void end_drawing();
@@ -112,6 +121,9 @@ public:
     void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes);
     void copy(const Buffer& source, const Image& target);
     void copy(const Image& source, const Buffer& target);
+    /// A rectangle from one layer to another; of two images, or not overlapping.
+    void copy(const Image& source, LayerPlace from, const Image& target, LayerPlace to,
+              Extent size);
 
 private:
     const Device* device_;

@@ -13,6 +13,12 @@ BiasOptions bias(const MapOptions& options) {
     return bias;
 }
 
+/// What is in a map that is reused must not depend on what the camera sees just now.
+CasterVolume drawn_casters(const MapOptions& options, const PlannedLayer& layer) {
+    if (!options.cull_casters) return {};
+    return options.reuse_maps ? CasterVolume(layer.lookup.fit) : layer.casters;
+}
+
 }  // namespace
 
 MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options)
@@ -76,7 +82,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     const MapPlan planned = plan(input.frame, seen);
     layers_ = {.choice = planned.choice, .layers = {}, .blend = planned.blend};
     for (const PlannedLayer& layer : planned.layers) {
-        drawn.push_back({layer.lookup.fit, options_.cull_casters ? layer.casters : CasterVolume(),
+        drawn.push_back({layer.lookup.fit, drawn_casters(options_, layer),
                          static_cast<float>(options_.caster_error), options_.faces,
                          layer.needed || !options_.cull_casters});
         layers_.layers.push_back(layer.lookup);

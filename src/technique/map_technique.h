@@ -95,8 +95,9 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                         "farther towards the light"),
         boolean<Options>(
             "reuse_maps", &Options::reuse_maps,
-            "a map is drawn only when it would differ from the last: for lights, casters "
-            "and views that rest"),
+            "what is in a map stays while its light, casters and texels do: nothing is drawn of "
+            "maps that rest, and only what comes into maps that move by whole texels; casters are "
+            "then culled by the map's sides alone"),
         boolean<Options>("multi_draw", &Options::multi_draw,
                          "casters that are drawn alike are drawn by one command"),
         boolean<Options>("layered", &Options::layered,

@@ -35,14 +35,12 @@ struct CasterDraw {
     std::uint32_t first_instance = 0, instance_count = 0;
     std::uint32_t slot = 0;  ///< of the last instance
     Culled culled = Culled::none;
-    bool operator==(const CasterDraw&) const = default;
 };
 
 /// What differs between the instances that one draw draws.
 struct CasterInstance {
     Mat4 clip_from_local{1.0f};
     std::uint32_t layer = 0;
-    bool operator==(const CasterInstance&) const = default;
 };
 
 /// What is drawn into a map, layer by layer: plain numbers, before any device hears of them.

@@ -19,6 +19,10 @@ constexpr double kTouchingTexels = 0.25;
 
 }  // namespace
 
+CasterVolume::CasterVolume(const LightFit& fit) {
+    keep_within(fit, whole_map(fit.size_texels));
+}
+
 CasterVolume::CasterVolume(const LightFit& fit, DVec3 to_light_ws,
                            std::span<const glm::dvec4> planes_ws, double scene_size_m) {
     double texel_m = 0.0;
@@ -32,7 +36,7 @@ CasterVolume::CasterVolume(const LightFit& fit, DVec3 to_light_ws,
         sides_.push_back(
             {plane, std::max(kTouching * scene_size_m, kTouchingTexels * texel_m * cosine)});
     }
-    add_sides(fit);
+    keep_within(fit, whole_map(fit.size_texels));
 }
 
 CasterVolume::CasterVolume(const LightFit& fit, std::span<const glm::dvec4> planes_ws,
@@ -40,14 +44,17 @@ CasterVolume::CasterVolume(const LightFit& fit, std::span<const glm::dvec4> plan
     for (const glm::dvec4& plane : planes_ws) {
         if (glm::dot(DVec3(plane), light_ws) + plane.w >= 0.0) sides_.push_back({plane});
     }
-    add_sides(fit);
+    keep_within(fit, whole_map(fit.size_texels));
 }
 
-// |x| <= w and |y| <= w in the map's clip space, as planes of the world.
-void CasterVolume::add_sides(const LightFit& fit) {
+// low <= x / w <= high, and y so, in the map's clip space, as planes of the world.
+void CasterVolume::keep_within(const LightFit& fit, const TexelRect& texels) {
     const glm::dmat4 rows = glm::transpose(fit.clip_from_world);
-    for (const glm::dvec4& plane :
-         {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1], rows[3] + rows[1]}) {
+    const double ndc_per_texel = 2.0 / fit.size_texels;
+    const glm::dvec2 low = ndc_per_texel * glm::dvec2(texels.x, texels.y) - 1.0;
+    const glm::dvec2 high = low + ndc_per_texel * glm::dvec2(texels.width, texels.height);
+    for (const glm::dvec4& plane : {high.x * rows[3] - rows[0], rows[0] - low.x * rows[3],
+                                    high.y * rows[3] - rows[1], rows[1] - low.y * rows[3]}) {
         const double length = glm::length(DVec3(plane));
         if (length > 0.0) sides_.push_back({plane / length});
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "visibility/light_fit.h"
+#include "visibility/map_scroll.h"
 
 #include <glm/ext/vector_double4.hpp>
 
@@ -18,6 +19,8 @@ public:
     /// Everything is inside.
     CasterVolume() = default;
 
+    /// Within the sides of the map, whatever its receivers are.
+    explicit CasterVolume(const LightFit& fit);
     /// Of a light so far away that all rays to it are `to_light_ws`. `planes_ws` bound the
     /// receivers: (unit normal inwards, offset).
     CasterVolume(const LightFit& fit, DVec3 to_light_ws, std::span<const glm::dvec4> planes_ws,
@@ -25,12 +28,13 @@ public:
     /// Of a light within the world.
     CasterVolume(const LightFit& fit, std::span<const glm::dvec4> planes_ws, DVec3 light_ws);
 
+    /// Leaves out what cannot be seen in a part of the map.
+    void keep_within(const LightFit& fit, const TexelRect& texels);
+
     /// False only when nothing in the box can cast a shadow into the map.
     bool holds(const Box3& box_ws) const;
 
 private:
-    void add_sides(const LightFit& fit);
-
     struct Side {
         glm::dvec4 plane;
         double touching_m = 0.0;  ///< casters that reach no farther in than this only touch

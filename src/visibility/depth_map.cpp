@@ -18,6 +18,12 @@ namespace {
 
 constexpr VkFormat kDepthMapFormat = VK_FORMAT_D32_SFLOAT;
 
+/// Of a layer that moves, drawn one by one.
+constexpr std::size_t kMostStrips = 2;
+
+/// Share of a layer: where less stays, copying it saves little.
+constexpr double kLeastKept = 0.5;
+
 gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamps_near,
                               bool layered) {
     gpu::GraphicsPipelineInfo info;
@@ -68,6 +74,10 @@ VkDrawIndexedIndirectCommand command_of(const CasterDraw& draw) {
             static_cast<std::int32_t>(draw.draw->first_vertex), draw.first_instance};
 }
 
+VkRect2D area_of(const TexelRect& texels) {
+    return {{texels.x, texels.y}, {texels.width, texels.height}};
+}
+
 /// Whether all that is drawn can be drawn in one pass.
 bool agree(std::span<const MapLayer> layers) {
     return std::ranges::all_of(layers, [&](const MapLayer& layer) {
@@ -81,22 +91,23 @@ DepthMap::DepthMap(const gpu::Device& device) : device_(device) {}
 
 bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                       std::span<const MapLayer> layers, const CasterOptions& options) {
-    const bool is_new =
-        make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()));
-    make_buffers(scene.parts().size() * layers.size());
-    Contents contents{.ignore_alpha = options.ignore_alpha};
-    contents.passes = place_casters(scene, layers, options.layered);
-    contents.instances = casters_.instances();
-    if (options.reuse && !is_new && holds(scene) && contents == drawn_) return false;
-    drawn_ = std::move(contents);
-    drawn_scene_ = scene.scene().identity();
+    make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()), options.reuse);
+    make_buffers(scene.parts().size() * layers.size() * (options.reuse ? kMostStrips : 1));
+    if (!options.reuse || !holds(scene, options)) held_.assign(layers.size(), {});
+    held_scene_ = scene.scene().identity();
+    held_ignores_alpha_ = options.ignore_alpha;
+    plan(scene, layers, options);
+    if (passes_.empty() && moves_.empty() && image_.use == gpu::Use::sampled) return false;
 
+    move(commands);
     upload(commands);
     commands.use(image_, gpu::Use::depth_target);
     std::uint64_t first_command = 0;
-    for (const Pass& pass : drawn_.passes) {
-        commands.begin_drawing(
-            {.depth = &image_, .depth_layer = pass.layer, .size = image_.size()});
+    for (const Pass& pass : passes_) {
+        commands.begin_drawing({.depth = &image_,
+                                .depth_layer = pass.layer,
+                                .size = image_.size(),
+                                .area = area_of(pass.texels)});
         draw(commands, scene, pass, first_command, options);
         commands.end_drawing();
         first_command += pass.draws.size();
@@ -105,21 +116,29 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
     return true;
 }
 
-bool DepthMap::holds(const raster::GpuScene& scene) const {
+bool DepthMap::holds(const raster::GpuScene& scene, const CasterOptions& options) const {
     const std::weak_ptr<const SceneData> identity = scene.scene().identity();
-    return !drawn_scene_.owner_before(identity) && !identity.owner_before(drawn_scene_);
+    return options.ignore_alpha == held_ignores_alpha_ && !held_scene_.owner_before(identity) &&
+           !identity.owner_before(held_scene_);
 }
 
-bool DepthMap::make_image(unsigned size_texels, unsigned layers) {
+void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {
     const Extent size{size_texels, size_texels};
-    if (image_ && image_.size() == size && image_.info().layers == layers) return false;
+    constexpr VkImageUsageFlags kCopied =
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    const VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                    VK_IMAGE_USAGE_SAMPLED_BIT | (reuse ? kCopied : 0);
+    if (image_ && image_.size() == size && image_.info().layers == layers &&
+        image_.info().usage == usage) {
+        return;
+    }
+    held_.assign(layers, {});
     image_ = gpu::Image(
-        device_, {.size = size,
-                  .format = kDepthMapFormat,
-                  .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                  .layers = layers,
-                  .array = true});
-    return true;
+        device_,
+        {.size = size, .format = kDepthMapFormat, .usage = usage, .layers = layers, .array = true});
+    scratch_ = gpu::Image();
+    if (!reuse) return;
+    scratch_ = gpu::Image(device_, {.size = size, .format = kDepthMapFormat, .usage = usage});
 }
 
 // As many as there can be in any frame of a scene.
@@ -133,35 +152,86 @@ void DepthMap::make_buffers(std::size_t most_draws) {
                             gpu::Placement::device);
 }
 
-std::vector<DepthMap::Pass> DepthMap::place_casters(const raster::GpuScene& scene,
-                                                    std::span<const MapLayer> layers,
-                                                    bool layered) {
+void DepthMap::plan(const raster::GpuScene& scene, std::span<const MapLayer> layers,
+                    const CasterOptions& options) {
     casters_.clear();
-    std::vector<Pass> passes;
-    const bool together = layered && device_.optional().layered_output && agree(layers);
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (!layers[i].needed) continue;
-        std::vector<CasterDraw> draws =
-            casters_.add(scene, layers[i], static_cast<std::uint32_t>(i));
-        if (!together || passes.empty()) {
-            passes.push_back({together ? -1 : static_cast<int>(i), layers[i].fit.clamps_near, {}});
+    passes_.clear();
+    moves_.clear();
+    texels_ = 0;
+    const TexelRect whole = whole_map(layers.front().fit.size_texels);
+    for (unsigned i = 0; i < layers.size(); ++i) {
+        const MapLayer& layer = layers[i];
+        if (!layer.needed) continue;
+        if (const std::optional<MapScroll> scrolled = what_stays(layer, i)) {
+            if (!scrolled->comes.empty()) moves_.push_back({i, *scrolled});
+            for (const TexelRect& strip : scrolled->comes)
+                place_casters(scene, layer, i, strip);
+            held_[i]->fit = scrolled->fit;
+        } else {
+            place_casters(scene, layer, i, whole);
+            held_[i] = {layer.fit, layer.caster_error_texels, layer.faces};
         }
-        std::vector<CasterDraw>& all = passes.back().draws;
-        all.insert(all.end(), draws.begin(), draws.end());
     }
-    for (Pass& pass : passes)
+    const bool all_are_whole = moves_.empty() && passes_.size() == layers.size();
+    if (options.layered && device_.optional().layered_output && all_are_whole && agree(layers))
+        join_passes();
+    for (Pass& pass : passes_)
         sort_by_state(pass.draws);
-    return passes;
+}
+
+void DepthMap::join_passes() {
+    Pass& all = passes_.front();
+    all.layer = -1;
+    for (const Pass& pass : std::span(passes_).subspan(1))
+        all.draws.insert(all.draws.end(), pass.draws.begin(), pass.draws.end());
+    passes_.resize(1);
+}
+
+std::optional<MapScroll> DepthMap::what_stays(const MapLayer& layer, unsigned index) const {
+    const std::optional<Held>& held = held_[index];
+    if (!held || held->caster_error_texels != layer.caster_error_texels ||
+        held->faces != layer.faces) {
+        return {};
+    }
+    std::optional<MapScroll> scrolled = scroll(held->fit, layer.fit);
+    const double whole = static_cast<double>(whole_map(layer.fit.size_texels).area());
+    if (scrolled && static_cast<double>(scrolled->stays.area()) < kLeastKept * whole) return {};
+    return scrolled;
+}
+
+void DepthMap::place_casters(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
+                             const TexelRect& texels) {
+    MapLayer part = layer;
+    if (texels != whole_map(layer.fit.size_texels)) part.casters.keep_within(layer.fit, texels);
+    passes_.push_back(
+        {static_cast<int>(index), layer.fit.clamps_near, texels, casters_.add(scene, part, index)});
+    texels_ += texels.area();
+}
+
+// Through the scratch image, because a copy must not overlap what it reads.
+void DepthMap::move(gpu::Commands& commands) {
+    for (const Move& move : moves_) {
+        const TexelRect& to = move.by.stays;
+        const Extent size{to.width, to.height};
+        const gpu::LayerPlace from{move.layer, {to.x - move.by.x_texels, to.y - move.by.y_texels}};
+        commands.use(image_, gpu::Use::copy_source);
+        commands.use(scratch_, gpu::Use::copy_target);
+        commands.copy(image_, from, scratch_, {}, size);
+        commands.use(scratch_, gpu::Use::copy_source);
+        commands.use(image_, gpu::Use::copy_target);
+        commands.copy(scratch_, {}, image_, {move.layer, {to.x, to.y}}, size);
+    }
 }
 
 void DepthMap::upload(gpu::Commands& commands) {
     std::vector<VkDrawIndexedIndirectCommand> draws;
-    for (const Pass& pass : drawn_.passes) {
+    for (const Pass& pass : passes_) {
         for (const CasterDraw& draw : pass.draws)
             draws.push_back(command_of(draw));
     }
     if (draws.empty()) return;
-    commands.update(instances_, std::as_bytes(std::span(drawn_.instances)), gpu::Use::vertex_read);
+    commands.update(instances_, std::as_bytes(std::span(casters_.instances())),
+                    gpu::Use::vertex_read);
     commands.update(commands_, std::as_bytes(std::span(draws)), gpu::Use::vertex_read);
 }
 

@@ -14,7 +14,7 @@ namespace gnomon {
 /// How casters are drawn.
 struct CasterOptions {
     bool ignore_alpha = false;
-    bool reuse = false;      ///< nothing is drawn that would be as what is there
+    bool reuse = false;      ///< what is there and would be drawn alike stays there
     bool multi_draw = true;  ///< what one state of the pipeline draws, by one command
     bool layered = false;    ///< all layers in one pass, where they and the device allow it
 };
@@ -27,43 +27,56 @@ public:
 
     /// Draws the casters of each layer, both sides unless the layer culls some, alpha masks
     /// honoured unless they are ignored. The layers have one size. The map is ready to be sampled
-    /// afterwards, as an array. False when nothing was drawn because all of it is there.
+    /// afterwards, as an array. To reuse what is there, the casters of a layer must be all that its
+    /// fit sees; a layer that is not needed keeps what it holds. False when nothing was drawn
+    /// because all of it is there.
     bool record(gpu::Commands& commands, const raster::GpuScene& scene,
                 std::span<const MapLayer> layers, const CasterOptions& options);
 
     const gpu::Image& image() const { return image_; }
     std::uint64_t memory_bytes() const {
-        return image_.memory_bytes() + instances_.memory_bytes() + commands_.memory_bytes();
+        return image_.memory_bytes() + scratch_.memory_bytes() + instances_.memory_bytes() +
+               commands_.memory_bytes();
     }
-    /// Of the last record(), over all layers.
+    /// Drawn by the last record(), over all layers: triangles, and the texels that they could
+    /// reach.
     std::uint64_t triangles() const { return casters_.triangles(); }
+    std::uint64_t texels() const { return texels_; }
 
 private:
-    /// What is drawn at once: a layer, or all.
+    /// What is drawn at once: a layer, a strip of it, or all layers.
     struct Pass {
         int layer = -1;  ///< all
         bool clamps_near = true;
+        TexelRect texels;
         std::vector<CasterDraw> draws;
-        bool operator==(const Pass&) const = default;
     };
-    /// All that decides what is in the map.
-    struct Contents {
-        std::vector<Pass> passes;
-        std::vector<CasterInstance> instances;
-        bool ignore_alpha = false;
-        bool operator==(const Contents&) const = default;
+    /// All that decides what is in a layer, beside what decides it for all layers.
+    struct Held {
+        LightFit fit;
+        float caster_error_texels = 0.0f;
+        CasterFaces faces = CasterFaces::all;
+    };
+    /// What is in a layer and moves.
+    struct Move {
+        unsigned layer = 0;
+        MapScroll by;
     };
     /// Pipelines for one way to draw.
     struct Pipelines {
         gpu::Pipeline opaque, masked;
     };
 
-    /// False when there is one already.
-    bool make_image(unsigned size_texels, unsigned layers);
+    void make_image(unsigned size_texels, unsigned layers, bool reuse);
     void make_buffers(std::size_t most_draws);
-    bool holds(const raster::GpuScene& scene) const;
-    std::vector<Pass> place_casters(const raster::GpuScene& scene, std::span<const MapLayer> layers,
-                                    bool layered);
+    bool holds(const raster::GpuScene& scene, const CasterOptions& options) const;
+    void plan(const raster::GpuScene& scene, std::span<const MapLayer> layers,
+              const CasterOptions& options);
+    std::optional<MapScroll> what_stays(const MapLayer& layer, unsigned index) const;
+    void place_casters(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
+                       const TexelRect& texels);
+    void join_passes();
+    void move(gpu::Commands& commands);
     void upload(gpu::Commands& commands);
     void draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pass& pass,
               std::uint64_t first_command, const CasterOptions& options);
@@ -72,9 +85,14 @@ private:
     const gpu::Device& device_;
     std::optional<Pipelines> pipelines_[2][2];  // by whether the near plane clamps; layered or not
     gpu::Image image_;
+    gpu::Image scratch_;  // for what moves within a layer; only where maps are reused
     CasterDraws casters_;
-    Contents drawn_;
-    std::weak_ptr<const SceneData> drawn_scene_;
+    std::vector<Pass> passes_;
+    std::vector<Move> moves_;
+    std::uint64_t texels_ = 0;
+    std::vector<std::optional<Held>> held_;  // by layer
+    std::weak_ptr<const SceneData> held_scene_;
+    bool held_ignores_alpha_ = false;
     gpu::Buffer instances_;
     gpu::Buffer commands_;  // of all passes, one after the other
 };

@@ -280,7 +280,7 @@ LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> r
 // the size of the texels, and the centre is moved by whole texels only.
 LightFit fit_directional_stable(const DirectionalLight& light, const Camera& camera, Extent size,
                                 DepthRange range, const Box3& bounds, unsigned size_texels,
-                                float margin_texels) {
+                                float margin_texels, int step_texels) {
     const DVec3 to_light = glm::normalize(DVec3(light.to_light_ws));
     // The light's view does not move with the scene's bounds: these may change with an animation.
     const glm::dmat4 view = light_from_world(to_light, DVec3(0.0));
@@ -297,15 +297,15 @@ LightFit fit_directional_stable(const DirectionalLight& light, const Camera& cam
     const double radius_m = std::sqrt(
         std::max(near2 + along_m * along_m, far2 + (depth_m - along_m) * (depth_m - along_m)));
 
-    // One texel more on each side for the rounding of the centre, and the radius rounded up, lest
-    // the last bits of the camera's matrix change the texels.
+    // Half a step and half a texel more on each side for the rounding of the centre, and the radius
+    // rounded up, lest the last bits of the camera's matrix change the texels.
     constexpr double kRadiusSteps = 1024.0;
     const double step_m = std::exp2(std::floor(std::log2(radius_m))) / kRadiusSteps;
     const double side_m = 2.0 * std::ceil(radius_m / step_m) * step_m;
-    const float margin = margin_texels + 1.0f;
-    const double texel_m = side_m / used_texels(size_texels, margin);
+    const float margin = margin_texels + 0.5f * static_cast<float>(step_texels + 1);
+    const double moves_by_m = step_texels * side_m / used_texels(size_texels, margin);
     const glm::dvec2 middle(view * DVec4(center, 1.0));
-    const glm::dvec2 snapped = glm::floor(middle / texel_m + 0.5) * texel_m;
+    const glm::dvec2 snapped = glm::floor(middle / moves_by_m + 0.5) * moves_by_m;
     return parallel_fit({view, snapped, {1.0, 0.0}, glm::dvec2(side_m)},
                         casters_range(view, bounds), size_texels, margin);
 }

@@ -68,10 +68,11 @@ LightFit fit_directional(const DirectionalLight& light, std::span<const DVec3> r
 
 /// A map around the sphere around all of the camera's frustum in `range`, whose texels stay where
 /// they are in the world while the camera moves and turns: M. Valient, "Stable Rendering of
-/// Cascaded Shadow Maps", ShaderX6, 2008.
+/// Cascaded Shadow Maps", ShaderX6, 2008. It moves by `step_texels` at once, for which it spends as
+/// many of its texels.
 LightFit fit_directional_stable(const DirectionalLight& light, const Camera& camera, Extent size,
                                 DepthRange range, const Box3& bounds, unsigned size_texels,
-                                float margin_texels);
+                                float margin_texels, int step_texels = 1);
 
 /// A map around the image of `receivers_ws`, none of which is behind the image's eye. Its depth
 /// range is theirs: casters above it are clamped to the near plane, which keeps them in front of

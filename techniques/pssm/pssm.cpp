@@ -8,6 +8,7 @@
 #include "technique/map_technique.h"
 #include "visibility/light_warp.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gnomon {
@@ -24,6 +25,7 @@ struct Options : MapOptions {
     double split_lambda = 0.8;
     double split_blend = 0.0;
     Fit fit = Fit::tight;
+    int stable_step = 1;
     Warp warp = Warp::none;
 };
 
@@ -40,6 +42,9 @@ const ParamTable<Options>& param_table() {
          choice("fit", &Options::fit, {"tight", "stable"},
                 "tight: the smallest map around what is seen; stable: edges do not crawl when the "
                 "camera moves"),
+         integer("stable_step", &Options::stable_step, 1, 256, "texels",
+                 "a stable map moves by as many at once, for which it spends as many; no more than "
+                 "an eighth of it. With reuse_maps most frames then draw none"),
          choice("warp", &Options::warp, {"none", "lispsm", "trapezoidal"},
                 "smaller texels towards the camera within a split; only with a tight fit")},
         map_rows<Options>());
@@ -64,7 +69,7 @@ private:
         MapPlan plan;
         // In a parallel view depths are no inverses of distances, by which the look-up mixes.
         if (frame.camera.ortho_height_m == 0.0f) plan.blend = options_.split_blend;
-        if (seen.range.far_m > seen.range.near_m) {
+        if (seen.range.far_m > seen.range.near_m) {  // else no receiver is seen
             const std::vector<DepthRange> occupied =
                 options_.fit == Fit::stable ? std::vector{in_steps(seen.range)} : seen.occupied();
             const std::vector<double> distances_m =
@@ -74,12 +79,14 @@ private:
                 const Seen inside = seen.within(range);
                 const std::vector<DVec3> receivers_ws =
                     visible_corners(frame.camera, frame.size, inside.bounds, inside.range);
-                if (receivers_ws.empty()) continue;
+                // A stable map that no receiver needs now keeps its place, and what is in it.
+                if (receivers_ws.empty() && options_.fit != Fit::stable) continue;
                 plan.layers.push_back(split(frame, inside, range, receivers_ws));
+                plan.layers.back().needed = !receivers_ws.empty();
                 plan.layers.back().lookup.from_m = distances_m[i];
             }
         }
-        if (plan.layers.empty()) plan.layers.push_back(split(frame, seen, {}, {}));  // none is seen
+        if (plan.layers.empty()) plan.layers.push_back(split(frame, seen, {0.0, 0.0}, {}));
         return plan;
     }
 
@@ -87,10 +94,14 @@ private:
                        std::span<const DVec3> receivers_ws) const {
         const auto& light = std::get<DirectionalLight>(frame.light);
         const Box3 bounds = frame.scene.bounds();
-        const bool stable = options_.fit == Fit::stable && !receivers_ws.empty();
+        const bool stable = options_.fit == Fit::stable && range.far_m > range.near_m;
+        constexpr int kLeastSteps = 8;  // across a map, which else would be all margin
+        const int step_texels =
+            std::clamp(options_.stable_step, 1, std::max(options_.map_size / kLeastSteps, 1));
         const LightFit fit =
             stable ? fit_directional_stable(light, frame.camera, frame.size, range, bounds,
-                                            options_.size_texels(), options_.margin_texels())
+                                            options_.size_texels(), options_.margin_texels(),
+                                            step_texels)
                    : fit_warped(options_.warp, kDefaultFocus, light, frame.camera, receivers_ws,
                                 bounds, options_.size_texels(), options_.margin_texels());
         return directional_layer(frame, seen, fit, stable ? range : seen.range);

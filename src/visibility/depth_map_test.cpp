@@ -1,0 +1,137 @@
+#include "visibility/depth_map.h"
+
+#include "gpu/device_test.h"
+#include "visibility/context_impl.h"
+#include "visibility/context_test.h"
+
+#include <glm/ext/matrix_transform.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace gnomon {
+namespace {
+
+constexpr unsigned kMapSize = 512;
+constexpr std::uint64_t kAllTexels = std::uint64_t{kMapSize} * kMapSize;
+
+/// A map that keeps what it can, and its counterparts that are drawn anew.
+class ScrolledDepthMapTest : public ContextTest {
+protected:
+    static const gpu::Device& device() { return context().impl().device(); }
+
+    static MapLayer layer_of(const Scene& scene, const Camera& camera,
+                             const DirectionalLight& light) {
+        constexpr float kMarginTexels = 3.0f;
+        const LightFit fit = fit_directional_stable(light, camera, {320, 180}, {1.0, 16.0},
+                                                    scene.bounds(), kMapSize, kMarginTexels);
+        return {.fit = fit, .casters = CasterVolume(fit)};
+    }
+
+    static bool record(DepthMap& map, const Scene& scene, const MapLayer& layer,
+                       const CasterOptions& options) {
+        const raster::GpuScene& gpu_scene = context().impl().gpu_scene(scene);
+        gpu::Submission submission(device());
+        gpu::Commands commands = submission.begin();
+        const bool is_drawn = map.record(commands, gpu_scene, std::span(&layer, 1), options);
+        submission.submit_and_wait();
+        return is_drawn;
+    }
+
+    static std::vector<float> depths(DepthMap& map) {
+        // What is read back returns to the use that it had.
+        return gpu::read_back<float>(device(), const_cast<gpu::Image&>(map.image()));
+    }
+};
+
+/// Texels whose depths differ by more than rounding.
+std::size_t count_off(const std::vector<float>& a, const std::vector<float>& b) {
+    // Of a depth range of some tens of metres: under a millimetre, and above what interpolation in
+    // float at another place of the map leaves.
+    constexpr float kRounding = 1e-5f;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        count += std::abs(a[i] - b[i]) > kRounding ? 1 : 0;
+    return count;
+}
+
+TEST_F(ScrolledDepthMapTest, HoldsWhatDrawingAllOfItWould) {
+    for (const char* name : {"field-small", "courtyard"}) {
+        const Scene scene = make_builtin_scene(name);
+        const auto light = std::get<DirectionalLight>(scene.lights().at(0));
+        const Camera start = scene.cameras().at(0);
+        DepthMap scrolled(device());
+        for (int frame = 0; frame < 12; ++frame) {
+            Camera camera = start;
+            // To and fro across the light's image, by parts of a texel and by some tens.
+            const float t = static_cast<float>(frame);
+            camera.view_from_world = glm::translate(
+                start.view_from_world, Vec3(0.02f * t * t, 0.0f, 0.7f * std::sin(1.3f * t)));
+            const MapLayer layer = layer_of(scene, camera, light);
+            record(scrolled, scene, layer, {.reuse = true});
+            const std::uint64_t texels = scrolled.texels();
+            EXPECT_LT(texels, frame == 0 ? kAllTexels + 1 : kAllTexels / 2) << name << frame;
+            DepthMap drawn(device());
+            record(drawn, scene, layer, {.reuse = true});
+            EXPECT_EQ(drawn.texels(), kAllTexels);
+            // Corners land on 1/256 of a texel, and where they land on another one an edge may
+            // pass a texel's centre on the other side.
+            const std::size_t off = count_off(depths(scrolled), depths(drawn));
+            EXPECT_LT(off, kAllTexels / 2000) << name << ", frame " << frame;
+        }
+    }
+}
+
+TEST_F(ScrolledDepthMapTest, DrawsLittleWhenTheCameraMovesALittle) {
+    const Scene scene = make_builtin_scene("courtyard");
+    const auto light = std::get<DirectionalLight>(scene.lights().at(0));
+    Camera camera = scene.cameras().at(0);
+    DepthMap map(device());
+    EXPECT_TRUE(record(map, scene, layer_of(scene, camera, light), {.reuse = true}));
+    const std::uint64_t all_triangles = map.triangles();
+    EXPECT_GT(all_triangles, 0u);
+    EXPECT_EQ(map.texels(), kAllTexels);
+
+    EXPECT_FALSE(record(map, scene, layer_of(scene, camera, light), {.reuse = true}));
+    EXPECT_EQ(map.triangles(), 0u);
+    EXPECT_EQ(map.texels(), 0u);
+
+    camera.view_from_world = glm::translate(camera.view_from_world, Vec3(0.3f, 0.0f, 0.2f));
+    EXPECT_TRUE(record(map, scene, layer_of(scene, camera, light), {.reuse = true}));
+    // Perhaps none: where no caster is, none is drawn.
+    EXPECT_LT(map.triangles(), all_triangles / 20);
+    EXPECT_GT(map.texels(), 0u);
+    EXPECT_LT(map.texels(), kAllTexels / 20);
+}
+
+TEST_F(ScrolledDepthMapTest, IsDrawnWholeWhenAnythingElseChanges) {
+    const Scene scene = make_builtin_scene("courtyard");
+    auto light = std::get<DirectionalLight>(scene.lights().at(0));
+    const Camera camera = scene.cameras().at(0);
+    DepthMap map(device());
+    const auto texels = [&](const Scene& of, const MapLayer& layer, const CasterOptions& options) {
+        record(map, of, layer, options);
+        return map.texels();
+    };
+    MapLayer layer = layer_of(scene, camera, light);
+    EXPECT_EQ(texels(scene, layer, {.reuse = true}), kAllTexels);
+    EXPECT_EQ(texels(scene, layer, {.reuse = true}), 0u);
+    EXPECT_EQ(texels(scene, layer, {.ignore_alpha = true, .reuse = true}), kAllTexels);
+    layer.caster_error_texels = 0.5f;
+    EXPECT_EQ(texels(scene, layer, {.ignore_alpha = true, .reuse = true}), kAllTexels);
+    layer.faces = CasterFaces::lit;
+    EXPECT_EQ(texels(scene, layer, {.ignore_alpha = true, .reuse = true}), kAllTexels);
+    light.to_light_ws = normalize(light.to_light_ws + Vec3(0.01f, 0.0f, 0.0f));
+    layer = layer_of(scene, camera, light);
+    EXPECT_EQ(texels(scene, layer, {.reuse = true}), kAllTexels);
+    const Scene same_again = make_builtin_scene("courtyard");
+    EXPECT_EQ(texels(same_again, layer, {.reuse = true}), kAllTexels);
+    EXPECT_EQ(texels(same_again, layer, {.reuse = true}), 0u);
+    EXPECT_EQ(texels(same_again, layer, {}),
+              kAllTexels);  // nothing is reused unless that is wanted
+    EXPECT_EQ(texels(same_again, layer, {.reuse = true}), kAllTexels);
+}
+
+}  // namespace
+}  // namespace gnomon
