@@ -75,6 +75,8 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
     describe_texels(frame, out.impl());
 }
 
+void HostTechnique::describe_texels(std::span<const trace::Receiver>, Visibility::Impl&) {}
+
 void HostTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
                                  Progress& progress) {
     const std::shared_ptr<FrameReceivers> receivers = context().receiver_points(frame, progress);
@@ -83,6 +85,8 @@ void HostTechnique::render_frame(const Frame& frame, Visibility& out, RenderStat
     compute(frame, receivers->points, target.pixels(), progress);
     stats.cpu_ms = ms_since(start);
     stats.memory_bytes = memory_bytes();
+    stats.note = note();
+    describe_texels(receivers->points, out.impl());
 }
 
 }  // namespace gnomon

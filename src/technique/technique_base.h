@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 namespace gnomon {
 
@@ -81,6 +82,10 @@ protected:
     virtual void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
                          std::span<float> out, Progress& progress) = 0;
     virtual std::uint64_t memory_bytes() const = 0;
+    /// Tells `out` of the texels, for techniques that have some.
+    virtual void describe_texels(std::span<const trace::Receiver> receivers, Visibility::Impl& out);
+    /// RenderStats::note of what was rendered last.
+    virtual std::string note() const { return {}; }
 
 private:
     void render_frame(const Frame& frame, Visibility& out, RenderStats& stats,

@@ -268,6 +268,22 @@ void Tracer::visibility(std::span<const Receiver> receivers, Extent size, const 
         "tracing shadow rays", &progress);
 }
 
+void Tracer::blocked(std::span<const ShadowRay> rays, std::span<std::uint8_t> out) const {
+    assert(out.size() == rays.size());
+    if (rays.empty()) return;
+    ShadowRays batch(rays.front().to_infinity);
+    for (std::size_t first = 0; first < rays.size(); first += batch.size()) {
+        batch.clear();
+        for (std::size_t i = first; i < rays.size() && !batch.full(); ++i) {
+            assert(rays[i].to_infinity == rays.front().to_infinity);
+            batch.add(*rays[i].receiver, rays[i].direction_ws);
+        }
+        caster_->trace(batch);
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            out[first + i] = batch.blocked(i) ? 1 : 0;
+    }
+}
+
 std::vector<SurfaceId> Tracer::visible_surfaces(const Camera& camera, Extent size,
                                                 Progress& progress) const {
     std::vector<SurfaceId> surfaces(std::size_t{size.width} * size.height);

@@ -41,6 +41,11 @@ public:
     void visibility(std::span<const Receiver> receivers, Extent size, const Light& light,
                     int samples, unsigned seed, std::span<float> out, Progress& progress) const;
 
+    /// Which of `rays` are blocked before they reach their light, as visibility() sees it: 1 for
+    /// those, else 0, to `out` of that length. All are to infinity or none is. Runs on the calling
+    /// thread alone.
+    void blocked(std::span<const ShadowRay> rays, std::span<std::uint8_t> out) const;
+
     /// What the ray through each pixel's centre sees first, row-major, top row first. Holes of
     /// masked materials and the backs of materials that are not double-sided are not seen.
     /// Throws Error{cancelled}.

@@ -193,5 +193,32 @@ TEST(Receivers, AreKeptInsideTheirTriangle) {
     EXPECT_FALSE(receiver_on(line, {0, 0}, {0, 5, 0}, {0, -1, 0}).exists());
 }
 
+// More rays than are traced at a time, to lights of both kinds.
+TEST(Tracer, BlockedRaysAreThoseOfItsVisibility) {
+    const Scene scene = playground(true);
+    const Tracer tracer = make_tracer(scene);
+    std::vector<Receiver> receivers;
+    for (int i = 0; i < 1000; ++i)
+        receivers.push_back(on_ground(0.02f * static_cast<float>(i) - 10.0f, 1.0f));
+    const PointLight lamp{.position_ws = {-6, 12, 4}};
+    const DirectionalLight hard_sun = sun(radians(40.0f), radians(30.0f), 0.0f);
+    for (const Light& light : {Light(lamp), Light(hard_sun)}) {
+        const bool to_infinity = std::holds_alternative<DirectionalLight>(light);
+        std::vector<ShadowRay> rays;
+        for (const Receiver& receiver : receivers) {
+            const Vec3 direction =
+                to_infinity ? hard_sun.to_light_ws : lamp.position_ws - receiver.position_ws;
+            rays.push_back({&receiver, direction, to_infinity});
+        }
+        std::vector<std::uint8_t> blocked(rays.size());
+        tracer.blocked(rays, blocked);
+        const std::vector<float> visible = visibility(tracer, receivers, light);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            EXPECT_EQ(blocked[i], visible[i] == 0.0f ? 1 : 0) << light_kind(light) << ", " << i;
+        EXPECT_GT(std::ranges::count(blocked, 1), 50);
+        EXPECT_GT(std::ranges::count(blocked, 0), 50);
+    }
+}
+
 }  // namespace
 }  // namespace gnomon::trace

@@ -116,6 +116,11 @@ void Visibility::Impl::set_texels(TexelSize texel_size, float filter_radius_texe
     frame_ = frame;
 }
 
+void Visibility::Impl::set_texels(Image texel_size_m, float filter_radius_texels) {
+    texel_image_ = std::move(texel_size_m);
+    filter_radius_texels_ = filter_radius_texels;
+}
+
 const Image& Visibility::Impl::texel_size_m() {
     if (!texel_size_ || !texel_image_.empty()) return texel_image_;
     Progress silent;

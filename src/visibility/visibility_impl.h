@@ -26,7 +26,9 @@ public:
 
     /// Tells the texels of what was rendered for `frame`.
     void set_texels(TexelSize texel_size, float filter_radius_texels, const Frame& frame);
-    /// Made from the receivers at the first call.
+    /// The same by one value a pixel, for texels that differ by more than where they are.
+    void set_texels(Image texel_size_m, float filter_radius_texels);
+    /// Made from the receivers at the first call, unless it was given.
     const Image& texel_size_m();
     float filter_radius_texels() const { return filter_radius_texels_; }
 
