@@ -28,6 +28,7 @@ NO_BIAS = ("--shadow_map.receiver_plane false --shadow_map.bias_constant 0 --sha
            "--shadow_map.normal_offset 0 --shadow_map.caster_error 0")
 BLURRED = "--technique blurred_projection --blurred_projection.blur 8"
 FINE = "--shadow_map.map_size 4096"
+VERTEX = "--technique vertex_occlusion"
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
 
@@ -84,6 +85,11 @@ PICTURES = {
         "courtyard", "courtyard --technique shadow_volumes", "courtyard --ignore-alpha"]),
     "shadow_volumes-hard": ("1280x720", (0, 430, 480, 670), 2, [
         "gas-station", "gas-station --technique shadow_volumes"]),
+    "vertex_occlusion": ("1280x720", (200, 340, 860, 580), 2, ["courtyard"] + [
+        f"courtyard {VERTEX} --vertex_occlusion.tessellate {edge_m}" for edge_m in (0, 0.3, 0.03)]),
+    "vertex_occlusion-walls": ("1280x720", (620, 440, 860, 560), 3, ["courtyard"] + [
+        f"courtyard {VERTEX} --vertex_occlusion.tessellate 0.3 --vertex_occlusion.walls {walls}"
+        for walls in ("false", "true")]),
 }
 
 # Of a report: where the two techniques are beside the truth.

@@ -1,0 +1,234 @@
+// Visibility at vertices, once for a light that stands still, and at receivers by interpolation: S.
+// Dietrich, "More on Shadowing", developer's journal, GameDev.net, undated.
+//
+// Departures:
+// - A vertex has a value for each triangle that it belongs to and for each of its sides, with that
+//   triangle's own normal: edges stay hard, and a light that is behind a face is behind its
+//   vertices.
+// - The share of light is kept apart from its attenuation, which the lighting computes for each
+//   pixel.
+// - Receivers take nothing from vertices behind a wall, which are dark within whatever stands on
+//   the ground: else a dark hem goes around it, a cell wide, on its lit side.
+
+#include "vertex_bake.h"
+
+#include "base/parallel.h"
+#include "trace/light_sample.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace gnomon::vertex_occlusion {
+
+namespace {
+
+using trace::Receiver;
+using trace::Triangle;
+
+/// Vertices that are traced together: enough for all threads, few enough that what they are traced
+/// from takes some megabytes.
+constexpr std::uint64_t kBatchVertices = 1 << 17;
+constexpr std::size_t kTrianglesPerTask = 256;
+
+/// Apart from the truth's seed, and from that of other techniques' rays.
+constexpr unsigned kFirstSeed = 3;
+
+/// How high above the surface, in cells, a receiver looks for its vertices: higher than what lies
+/// on it, such as a road's markings, lower than a wall.
+constexpr double kLookHeight_cells = 1.0 / 32.0;
+
+/// What decides how much of a light is seen.
+struct Place {
+    using Numbers = std::vector<float>;
+    static void add(Numbers& numbers, Vec3 v) {
+        for (const float x : {v.x, v.y, v.z})
+            numbers.push_back(x);
+    }
+    static Numbers of(std::initializer_list<Vec3> vectors, float size = 0.0f) {
+        Numbers numbers{size};
+        for (const Vec3 v : vectors)
+            add(numbers, v);
+        return numbers;
+    }
+    Numbers operator()(const DirectionalLight& light) const {
+        return of({light.to_light_ws}, light.angular_diameter_rad);
+    }
+    Numbers operator()(const PointLight& light) const { return of({light.position_ws}); }
+    Numbers operator()(const SpotLight& light) const { return of({light.position_ws}); }
+    Numbers operator()(const SphereLight& light) const {
+        return of({light.center_ws}, light.radius_m);
+    }
+    Numbers operator()(const DiscLight& light) const {
+        return of({light.center_ws, light.normal_ws}, light.radius_m);
+    }
+    Numbers operator()(const RectLight& light) const {
+        return of({light.center_ws, light.half_u_ws, light.half_v_ws});
+    }
+};
+
+/// Tells of a part of a task as of the whole.
+class PartProgress final : public Progress {
+public:
+    PartProgress(Progress& whole, std::uint64_t done, std::uint64_t part, std::uint64_t all)
+        : whole_(whole),
+          begin_(static_cast<double>(done) / static_cast<double>(all)),
+          share_(static_cast<double>(part) / static_cast<double>(all)) {}
+    void report(std::string_view, double fraction) override {
+        whole_.report("baking vertices", begin_ + share_ * fraction);
+    }
+    bool cancelled() const override { return whole_.cancelled(); }
+
+private:
+    Progress& whole_;
+    double begin_, share_;
+};
+
+DVec3 position_ws(const Triangle& triangle, DVec3 weights) {
+    const auto& [a, b, c] = triangle.corners_ws;
+    return weights.x * a + weights.y * b + weights.z * c;
+}
+
+/// The vertices of a triangle as receivers; none where no part of the light is above their side.
+void add_vertices(const Scene& scene, const TriangleGrid& grid, bool front, const Light& light,
+                  std::span<Receiver> out) {
+    const Triangle triangle = trace::world_triangle(scene, grid.id);
+    const Mesh& mesh = scene.meshes()[scene.instances()[grid.id.instance].mesh];
+    const DVec3 normal = triangle.front_normal_ws();
+    const double area2 = glm::length(normal);
+    if (!(area2 > 0.0) || (!front && !scene.materials()[mesh.material].double_sided)) return;
+    const Vec3 normal_ws((front ? 1.0 : -1.0) / area2 * normal);
+    std::size_t at = 0;
+    for (unsigned j = 0; j <= grid.parts; ++j) {
+        for (unsigned i = 0; i + j <= grid.parts; ++i, ++at) {
+            const Vec3 p_ws(position_ws(triangle, sampled_at(grid.parts, {i, j})));
+            // On no surface: in the plane of a solid's face a vertex counts as outside of it,
+            // wherever the rest of its triangle lies.
+            const Receiver vertex{p_ws, normal_ws, {trace::kNoSurface, 0}};
+            if (trace::faces_light(vertex, light)) out[at] = vertex;
+        }
+    }
+}
+
+/// A receiver whose vertices differ, and the rays from it to them.
+struct Mixed {
+    std::size_t index = 0;  ///< among the receivers
+    Receiver lifted;
+    DVec3 weights{0.0};
+    std::array<float, 3> values{};
+    std::array<Vec3, 3> to_vertices_ws{};
+};
+
+/// The mean of what vertices hold by their weights; 0 when none holds anything.
+float mean(const std::array<float, 3>& values, DVec3 weights) {
+    double sum = 0.0, all = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        if (values[k] == VertexBake::kUnlit) continue;
+        sum += weights[k] * static_cast<double>(values[k]);
+        all += weights[k];
+    }
+    return all > 0.0 ? static_cast<float>(std::min(sum / all, 1.0)) : 0.0f;
+}
+
+/// The same of those vertices alone that are seen; of all when that leaves none.
+float mean_of_seen(const Mixed& mixed, std::span<const std::uint8_t> hidden) {
+    std::array<float, 3> seen = mixed.values;
+    double all = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        if (hidden[k] != 0) seen[k] = VertexBake::kUnlit;
+        if (seen[k] != VertexBake::kUnlit) all += mixed.weights[k];
+    }
+    return mean(all > 0.0 ? seen : mixed.values, mixed.weights);
+}
+
+bool differ(const std::array<float, 3>& values) {
+    return values[0] != values[1] || values[0] != values[2];
+}
+
+}  // namespace
+
+bool same_place(const Light& a, const Light& b) {
+    return a.index() == b.index() && std::visit(Place{}, a) == std::visit(Place{}, b);
+}
+
+VertexBake::VertexBake(const Scene& scene, const SceneGrid& grid, const trace::Tracer& tracer,
+                       const Light& light, int samples, Progress& progress) {
+    for (const bool front : {true, false})
+        trace_side(scene, grid, tracer, light, samples, front, progress);
+}
+
+void VertexBake::trace_side(const Scene& scene, const SceneGrid& grid, const trace::Tracer& tracer,
+                            const Light& light, int samples, bool front, Progress& progress) {
+    const std::span<const TriangleGrid> triangles = grid.triangles();
+    const std::uint64_t all = grid.vertex_count();
+    std::vector<float>& values = values_[front ? 0 : 1];
+    values.assign(all, kUnlit);
+    std::vector<Receiver> vertices;
+    unsigned seed = kFirstSeed;
+    for (std::size_t first = 0, last = 0; first < triangles.size(); first = last, ++seed) {
+        const std::uint64_t begin = triangles[first].first;
+        std::uint64_t end = begin;
+        for (; last < triangles.size() && (end == begin || end - begin < kBatchVertices); ++last)
+            end = triangles[last].first + vertex_count(triangles[last].parts);
+        vertices.assign(end - begin, {});
+        parallel_for(last - first, kTrianglesPerTask, [&](std::size_t from, std::size_t to) {
+            for (const TriangleGrid& triangle : triangles.subspan(first + from, to - from)) {
+                add_vertices(scene, triangle, front, light,
+                             std::span(vertices).subspan(triangle.first - begin,
+                                                         vertex_count(triangle.parts)));
+            }
+        });
+        PartProgress part(progress, (front ? 0 : all) + begin, end - begin, 2 * all);
+        tracer.visibility(vertices, {static_cast<unsigned>(end - begin), 1}, light, samples, seed,
+                          std::span(values).subspan(begin, end - begin), part);
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            if (!vertices[i].exists()) values[begin + i] = kUnlit;
+        }
+    }
+}
+
+std::uint64_t VertexBake::memory_bytes() const {
+    return (values_[0].size() + values_[1].size()) * sizeof(float);
+}
+
+void VertexLookup::look_up(std::span<const Receiver> receivers, std::span<float> out) const {
+    std::vector<Mixed> mixed;
+    for (std::size_t index = 0; index < receivers.size(); ++index) {
+        const Receiver& receiver = receivers[index];
+        if (!trace::faces_light(receiver, light_)) {
+            out[index] = receiver.exists() ? 0.0f : 1.0f;
+            continue;
+        }
+        const Triangle triangle = trace::world_triangle(scene_, receiver.id);
+        const TriangleGrid& grid = grid_.of(receiver.id);
+        const DVec3 normal_ws(receiver.normal_ws);
+        const DVec3 p_ws(receiver.position_ws);
+        const bool front = glm::dot(triangle.front_normal_ws(), normal_ws) > 0.0;
+        const GridCell cell = cell_at(grid.parts, barycentric(triangle, p_ws));
+        std::array<float, 3> values{};
+        for (int k = 0; k < 3; ++k) {
+            values[k] = bake_.value(front, grid.first + vertex_index(grid.parts, cell.vertices[k]));
+        }
+        out[index] = mean(values, cell.weights);
+        if (!walls_ || !differ(values)) continue;
+        Mixed more{index, receiver, cell.weights, values, {}};
+        more.lifted.position_ws =
+            Vec3(p_ws + kLookHeight_cells * static_cast<double>(grid.cell_m) * normal_ws);
+        for (int k = 0; k < 3; ++k) {
+            const DVec3 vertex_ws = position_ws(triangle, sampled_at(grid.parts, cell.vertices[k]));
+            more.to_vertices_ws[k] = Vec3(vertex_ws - p_ws);
+        }
+        mixed.push_back(more);
+    }
+
+    std::vector<trace::ShadowRay> rays;
+    for (const Mixed& one : mixed) {
+        for (const Vec3 to_vertex_ws : one.to_vertices_ws)
+            rays.push_back({&one.lifted, to_vertex_ws, false});
+    }
+    std::vector<std::uint8_t> hidden(rays.size());
+    tracer_.blocked(rays, hidden);
+    for (std::size_t i = 0; i < mixed.size(); ++i)
+        out[mixed[i].index] = mean_of_seen(mixed[i], std::span(hidden).subspan(3 * i, 3));
+}
+
+}  // namespace gnomon::vertex_occlusion
