@@ -18,7 +18,7 @@ IMAGE = BASE | {"image"}
 SCENE = IMAGE | {"scene"}
 SUN = SCENE | {"sun"}
 GPU = IMAGE | {"gpu"}
-VISIBILITY = SCENE | GPU | {"raster", "trace", "visibility"}
+VISIBILITY = SCENE | GPU | {"raster", "trace", "interval", "visibility"}
 TECHNIQUE = VISIBILITY | {"technique"}
 MODULES = {
     "base": BASE,
@@ -27,6 +27,7 @@ MODULES = {
     "sun": SUN,
     "lightmap": SCENE | {"lightmap"},
     "trace": SCENE | {"trace"},
+    "interval": SCENE | {"trace", "interval"},
     "gpu": GPU,
     "raster": SCENE | GPU | {"raster"},
     "visibility": VISIBILITY,
@@ -54,8 +55,9 @@ PUBLIC = {
 # Third-party headers that only some modules may see.
 RESERVED = [
     (re.compile(r"embree\d?/"), "Embree", {"trace"}),
-    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - SUN - {"trace", "lightmap"}),
     (re.compile(r"erfa"), "ERFA", {"sun"}),
+    (re.compile(r"hwy/"), "Highway", {"interval"}),
+    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - BAKE),
 ]
 
 # Public headers may use the standard library, glm and each other.
@@ -131,7 +133,7 @@ def faults_of_file(root, path):
         yield 1, f"{path} belongs to no module of tools/check_includes.py"
         return
     lines = (root / path).read_text(encoding="utf-8").splitlines()
-    if path.suffix == ".h" and "#pragma once" not in lines and not path.name.endswith(".shared.h"):
+    if path.suffix == ".h" and "#pragma once" not in lines and not path.name.endswith((".shared.h", ".inl.h")):
         yield 1, "a header starts with #pragma once"
     if len(lines) > MAX_LINES:
         yield MAX_LINES + 1, f"{len(lines)} lines, more than {MAX_LINES}: split the file"

@@ -89,6 +89,7 @@ class CheckIncludes(unittest.TestCase):
 
     def test_headers_are_guarded_and_files_short(self):
         self.assertIn("#pragma once", self.faults("src/base/a.h", "int a;")[0])
+        self.assert_right("src/interval/a.inl.h", "int a;")  # compiled once for each target
         limit = check_includes.MAX_LINES
         self.assert_right("src/base/a.cpp", *["int a;"] * limit)
         self.assertIn(f"{limit + 1}: ", self.faults("src/base/a.cpp", *["int a;"] * (limit + 1))[0])

@@ -28,18 +28,6 @@ namespace gnomon::trace {
 
 namespace {
 
-/// Roundings behind a corner's height over another triangle's plane. A coordinate is rounded twice
-/// (in the mesh, and as a factor of the instance's matrix); a plane through three such corners errs
-/// up to twice as much beside its triangle, over a neighbour of its own size; the neighbour's
-/// corner adds its own two, the receiver's position one.
-constexpr double kRoundings = 2 * 2 + 2 + 1;
-
-/// How much a height along `normal` can err when the coordinates that it comes from have these
-/// magnitudes. Scales with the length of `normal`, as the height does.
-double height_error(DVec3 normal, DVec3 magnitude) {
-    return kRoundings * kUnitRoundoff * glm::dot(glm::abs(normal), magnitude);
-}
-
 bool on_or_below(const Triangle& triangle, DVec3 point, DVec3 normal) {
     const double error = height_error(normal, triangle.magnitude + glm::abs(point));
     return std::ranges::all_of(triangle.corners_ws, [&](DVec3 corner) {

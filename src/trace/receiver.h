@@ -3,6 +3,7 @@
 #include <gnomon/scene.h>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <array>
 #include <cmath>
@@ -48,6 +49,18 @@ struct Triangle {
 };
 
 Triangle world_triangle(const Scene& scene, SurfaceId surface);
+
+/// Roundings behind a corner's height over another triangle's plane. A coordinate is rounded twice
+/// (in the mesh, and as a factor of the instance's matrix); a plane through three such corners errs
+/// up to twice as much beside its triangle, over a neighbour of its own size; the neighbour's
+/// corner adds its own two, the receiver's position one.
+inline constexpr double kHeightRoundings = 2 * 2 + 2 + 1;
+
+/// How much a height along `normal` can err when the coordinates that it comes from have these
+/// magnitudes. Scales with the length of `normal`, as the height does.
+inline double height_error(DVec3 normal, DVec3 magnitude) {
+    return kHeightRoundings * kUnitRoundoff * glm::dot(glm::abs(normal), magnitude);
+}
 
 /// A ray towards a light. `direction_ws` has the length of the way to the light, so that the light
 /// is at t = 1; or it is a unit vector and the light infinitely far.

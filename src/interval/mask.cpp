@@ -1,0 +1,47 @@
+#include "interval/mask.h"
+
+#include <bit>
+
+namespace gnomon::interval {
+
+std::vector<Interval> intervals(Mask mask) {
+    std::vector<Interval> runs;
+    bool lit = false;
+    for (std::size_t word = 0; word < mask.size(); ++word) {
+        // Bits that differ from the step before.
+        std::uint64_t edges = mask[word] ^ (mask[word] << 1 | std::uint64_t{lit});
+        for (; edges != 0; edges &= edges - 1) {
+            const int step = static_cast<int>(64 * word) + std::countr_zero(edges);
+            if (!lit) {
+                runs.push_back({step, step});
+            } else {
+                runs.back().fall = step;
+            }
+            lit = !lit;
+        }
+    }
+    if (lit) runs.back().fall = static_cast<int>(64 * mask.size());
+    return runs;
+}
+
+int lit_steps(Mask mask) {
+    int count = 0;
+    for (const std::uint64_t word : mask)
+        count += std::popcount(word);
+    return count;
+}
+
+// H. S. Warren, "Hacker's Delight", 2nd edition (2013), section 7-3, for 64 bits and the lowest
+// first: swaps the off-diagonal quarters of ever smaller squares.
+void transpose(std::span<std::uint64_t, 64> bits) {
+    std::uint64_t low_half = 0x00000000ffffffff;
+    for (unsigned half = 32; half != 0; half /= 2, low_half ^= low_half << half) {
+        for (unsigned i = 0; i < 64; i = (i + half + 1) & ~half) {
+            const std::uint64_t swapped = (bits[i] >> half ^ bits[i + half]) & low_half;
+            bits[i] ^= swapped << half;
+            bits[i + half] ^= swapped;
+        }
+    }
+}
+
+}  // namespace gnomon::interval

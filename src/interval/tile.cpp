@@ -1,0 +1,330 @@
+#include "interval/tile.h"
+
+#include "interval/exact.h"
+#include "interval/mask.h"
+#include "interval/walk.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace gnomon::interval {
+
+namespace {
+
+using trace::kUnitRoundoff;
+using trace::Receiver;
+
+/// Tiles are plane to this part of their size, or they are taken apart: what is not plane is taken
+/// for an error of float, and left to double.
+constexpr double kPlane = 1e-4;
+
+/// The axes are a little longer than the tile, so that no s or t is rounded to more than 1.
+constexpr double kLonger = 1.0 + 1e-5;
+
+/// atan2 of ranges.inl.h, with the roundings of its argument.
+constexpr double kAtanError_rad = 4e-6;
+/// Roundings of a step's number, relative to the greatest number in its computation.
+constexpr double kStepRoundings = 16.0;
+/// Slopes of boxes are computed to about 8 roundings, and compared as squares.
+constexpr double kSlopeError = 1e-5;
+/// A slope whose square float holds, steeper than any that a box can have.
+constexpr double kSteepest = 1e18;
+
+double sum_of_magnitudes(DVec3 v) {
+    return glm::dot(glm::abs(v), DVec3(1.0));
+}
+
+void store(float (&to)[3], DVec3 v) {
+    for (int axis = 0; axis < 3; ++axis)
+        to[axis] = static_cast<float>(v[axis]);
+}
+
+DVec3 loaded(const float (&from)[3]) {
+    return {from[0], from[1], from[2]};
+}
+
+RangeTerms range_terms(const DayPath& path) {
+    const DayPath::Fit& fit = path.fit();
+    const auto signed_square = [](double slope) {
+        const double clamped = std::clamp(slope, -kSteepest, kSteepest);
+        return static_cast<float>(clamped * std::abs(clamped));
+    };
+    RangeTerms terms;
+    terms.low_slope2 = signed_square(fit.low_slope - kSlopeError * (1.0 + std::abs(fit.low_slope)));
+    terms.high_slope2 =
+        signed_square(fit.high_slope + kSlopeError * (1.0 + std::abs(fit.high_slope)));
+    const double rate = std::abs(fit.steps_per_rad);
+    // At least what all steps take, also where the sun does not move.
+    const double period = std::max(2.0 * std::numbers::pi * rate, 1.0);
+    const double slack =
+        fit.slack_steps + kAtanError_rad * rate +
+        kStepRoundings * kUnitRoundoff * (period + std::abs(fit.step_at_zero) + path.steps());
+    terms.steps_per_rad = static_cast<float>(fit.steps_per_rad);
+    terms.first_at_zero = static_cast<float>(fit.step_at_zero - slack);
+    terms.last_at_zero = static_cast<float>(fit.step_at_zero + slack);
+    terms.period_steps = static_cast<float>(period);
+    terms.periods_per_step = 1.0f / terms.period_steps;
+    terms.last_step = static_cast<float>(path.steps() - 1);
+    return terms;
+}
+
+/// The corner of the receivers' bounding rectangle, and its sides: along the way to the receiver
+/// that is farthest from the first, and at right angles to it.
+struct Rectangle {
+    DVec3 center, half_u, half_v;
+};
+
+Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
+    const auto far_from_first = [&](DVec3 p) { return glm::dot(p - origins[0], p - origins[0]); };
+    const DVec3 farthest = *std::ranges::max_element(origins, {}, far_from_first);
+    if (!(far_from_first(farthest) > 0.0)) return {origins[0], DVec3(0.0), DVec3(0.0)};
+    const DVec3 u = glm::normalize(farthest - origins[0]);
+    const DVec3 v = glm::cross(normal, u);
+    double low_u = 0.0, high_u = 0.0, low_v = 0.0, high_v = 0.0;
+    for (const DVec3& origin : origins) {
+        const double along_u = glm::dot(origin - origins[0], u);
+        const double along_v = glm::dot(origin - origins[0], v);
+        low_u = std::min(low_u, along_u);
+        high_u = std::max(high_u, along_u);
+        low_v = std::min(low_v, along_v);
+        high_v = std::max(high_v, along_v);
+    }
+    return {origins[0] + 0.5 * (low_u + high_u) * u + 0.5 * (low_v + high_v) * v,
+            0.5 * kLonger * (high_u - low_u) * u, 0.5 * kLonger * (high_v - low_v) * v};
+}
+
+float coordinate_along(DVec3 offset, DVec3 axis) {
+    const double length2 = glm::dot(axis, axis);
+    return length2 > 0.0 ? static_cast<float>(glm::dot(offset, axis) / length2) : 0.0f;
+}
+
+/// Sets what Tile::touch_m promises, and what height_over_tile() needs. No origin is farther than
+/// `height_m` from the plane through the tile's centre.
+void set_heights(Tile& tile, const Tree& tree, std::span<const Receiver> receivers,
+                 double height_m) {
+    const DVec3 normal(receivers[0].normal_ws);
+    double lift_m = 0.0, magnitude_m = 0.0;
+    tile.low_height_m = tile.low_magnitude_m = std::numeric_limits<double>::infinity();
+    tile.high_height_m = tile.high_magnitude_m = -tile.low_height_m;
+    for (const Receiver& receiver : receivers) {
+        const DVec3 position(receiver.position_ws);
+        const double height = glm::dot(normal, position - DVec3(receivers[0].position_ws));
+        tile.low_height_m = std::min(tile.low_height_m, height);
+        tile.high_height_m = std::max(tile.high_height_m, height);
+        const double along_normal = glm::dot(glm::abs(normal), glm::abs(position));
+        tile.low_magnitude_m = std::min(tile.low_magnitude_m, along_normal);
+        tile.high_magnitude_m = std::max(tile.high_magnitude_m, along_normal);
+        const DVec3 lift = DVec3(trace::lifted_position_ws(receiver)) - position;
+        lift_m = std::max(lift_m, sum_of_magnitudes(lift));
+        magnitude_m = std::max(magnitude_m, sum_of_magnitudes(position));
+    }
+    const double tolerated_m =
+        trace::kHeightRoundings * kUnitRoundoff * (tree.magnitude_m() + magnitude_m);
+    tile.touch_m = static_cast<float>(
+        kLonger * (tolerated_m + lift_m + tile.residual_m + height_m +
+                   2.0 * kUnitRoundoff * sum_of_magnitudes(loaded(tile.center_m))));
+}
+
+/// False when the receivers are not in one plane.
+bool set_tile(Tile& tile, const Tree& tree, std::span<const Receiver> receivers) {
+    std::array<DVec3, kMaxTexels> lanes;
+    const std::span<DVec3> origins(lanes.data(), receivers.size());
+    std::ranges::transform(receivers, origins.begin(), [&](const Receiver& receiver) {
+        return tree.from_world(DVec3(trace::lifted_position_ws(receiver)));
+    });
+    const DVec3 normal = tree.frame().from_world(DVec3(receivers[0].normal_ws));
+    const Rectangle around = rectangle_around(origins, normal);
+    store(tile.center_m, around.center);
+    store(tile.u_axis_m, around.half_u);
+    store(tile.v_axis_m, around.half_v);
+    store(tile.normal, normal);
+    const DVec3 u = loaded(tile.u_axis_m), v = loaded(tile.v_axis_m);
+    std::ranges::fill(tile.s, 0.0f);
+    std::ranges::fill(tile.t, 0.0f);
+    DVec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
+    double residual_m = 0.0, height_m = 0.0;
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        const DVec3 offset = origins[i] - loaded(tile.center_m);
+        tile.s[i] = coordinate_along(offset, u);
+        tile.t[i] = coordinate_along(offset, v);
+        const DVec3 rest = offset - double{tile.s[i]} * u - double{tile.t[i]} * v;
+        residual_m = std::max(residual_m, sum_of_magnitudes(rest));
+        height_m = std::max(height_m, std::abs(glm::dot(normal, offset)));
+        lower = glm::min(lower, origins[i]);
+        upper = glm::max(upper, origins[i]);
+    }
+    const double reach_m =
+        std::max(double{tree.reach_m()}, glm::length(glm::max(glm::abs(lower), glm::abs(upper))));
+    const double rounding_m = 4.0 * kUnitRoundoff * reach_m;
+    // Two receivers always lie on a line, but perhaps on a steep one.
+    const double plane_m = kPlane * (glm::length(u) + glm::length(v)) + rounding_m;
+    if (std::max(residual_m, height_m) > plane_m) return false;
+    tile.receivers = receivers.data();
+    tile.texels = static_cast<int>(receivers.size());
+    tile.residual_m = static_cast<float>(kLonger * residual_m);
+    store(tile.lower_m, lower - 2.0 * rounding_m);
+    store(tile.upper_m, upper + 2.0 * rounding_m);
+    set_heights(tile, tree, receivers, height_m);
+    return true;
+}
+
+/// All texels at the steps at which the receivers face the sun.
+void open_steps(Walk& walk) {
+    const Vec3 normal_ws = walk.tile.receivers[0].normal_ws;
+    if (normal_ws != walk.facing_normal_ws) {
+        walk.facing_normal_ws = normal_ws;
+        std::ranges::fill(walk.facing, 0);
+        for (int step = 0; step < walk.steps; ++step) {
+            const DVec3 to_sun = walk.path->to_sun_ws()[static_cast<std::size_t>(step)];
+            const bool faces = glm::dot(DVec3(normal_ws), to_sun) > 0.0;
+            walk.facing[step / 64] |= std::uint64_t{faces} << (step % 64);
+        }
+    }
+    std::ranges::copy(walk.facing, walk.open);
+    const std::uint64_t all = ~std::uint64_t{0} >> (kMaxTexels - walk.tile.texels);
+    for (int step = 0; step < walk.steps; ++step)
+        walk.lit[step] = (walk.facing[step / 64] >> (step % 64) & 1) != 0 ? all : 0;
+}
+
+/// Fills the hint leaf with the triangles that darkened most.
+void gather_hints(Walk& walk) {
+    const std::span<Culprit> culprits(walk.culprits, static_cast<std::size_t>(walk.culprit_count));
+    const std::size_t count = std::min<std::size_t>(kWidth, culprits.size());
+    std::ranges::partial_sort(culprits, culprits.begin() + static_cast<std::ptrdiff_t>(count),
+                              std::ranges::greater(), &Culprit::gain);
+    Leaf leaf = Leaf::empty();
+    LeafIds ids;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Culprit& culprit = culprits[i];
+        const Leaf& from = culprit.leaf == kHintLeaf
+                               ? walk.hint_leaf
+                               : walk.tree->leaves()[static_cast<std::size_t>(culprit.leaf)];
+        const auto lane = static_cast<std::size_t>(culprit.lane);
+        for (int axis = 0; axis < 3; ++axis) {
+            leaf.corner[axis][i] = from.corner[axis][lane];
+            leaf.edge1[axis][i] = from.edge1[axis][lane];
+            leaf.edge2[axis][i] = from.edge2[axis][lane];
+        }
+        ids[i] = walk.surface(culprit.leaf, culprit.lane);
+    }
+    walk.hint_leaf = leaf;
+    walk.hint_ids = ids;
+    walk.culprit_count = 0;
+}
+
+/// Texels at a step to steps at a texel.
+void write_masks(Walk& walk, std::span<std::uint64_t> masks) {
+    const auto words = static_cast<std::size_t>(walk.words);
+    if (walk.tile.texels == 1) {
+        std::copy_n(walk.open, words, masks.begin());
+        return;
+    }
+    std::fill(walk.lit + walk.steps, walk.lit + 64 * words, 0);
+    for (std::size_t word = 0; word < words; ++word) {
+        const std::span<std::uint64_t, 64> block(walk.lit + 64 * word, 64);
+        if (walk.open[word] != 0) transpose(block);
+        for (std::size_t texel = 0; texel < static_cast<std::size_t>(walk.tile.texels); ++texel)
+            masks[texel * words + word] = block[texel];
+    }
+}
+
+}  // namespace
+
+std::uint64_t blocked_texels(const Walk& walk, std::uint64_t texels, int step, std::int32_t leaf,
+                             int lane) {
+    const trace::SurfaceId id = walk.surface(leaf, lane);
+    const DVec3 to_sun = walk.path->to_sun_ws()[static_cast<std::size_t>(step)];
+    std::uint64_t blocked = 0;
+    for (; texels != 0; texels &= texels - 1) {
+        const int texel = std::countr_zero(texels);
+        if (blocks(walk.tree->scene(), walk.tree->ignores_alpha(), id, walk.tile.receivers[texel],
+                   to_sun)) {
+            blocked |= std::uint64_t{1} << texel;
+        }
+    }
+    return blocked;
+}
+
+Height height_over_tile(const Walk& walk, std::int32_t leaf, int lane) {
+    const trace::SurfaceId id = walk.surface(leaf, lane);
+    const trace::Triangle triangle = trace::world_triangle(walk.tree->scene(), id);
+    const Tile& tile = walk.tile;
+    const DVec3 normal(tile.receivers[0].normal_ws);
+    const DVec3 first(tile.receivers[0].position_ws);
+    double top_m = -std::numeric_limits<double>::infinity();
+    for (const DVec3& corner : triangle.corners_ws)
+        top_m = std::max(top_m, glm::dot(normal, corner - first));
+    const double of_triangle = trace::height_error(normal, triangle.magnitude);
+    const double per_m = trace::kHeightRoundings * kUnitRoundoff;
+    // Double's own roundings, relative to what is subtracted.
+    const double error_m = 16.0 * std::numeric_limits<double>::epsilon() *
+                           (walk.tree->magnitude_m() + sum_of_magnitudes(first));
+    if (top_m - tile.low_height_m <= of_triangle + per_m * tile.low_magnitude_m - error_m) {
+        return Height::below;
+    }
+    if (top_m - tile.high_height_m > of_triangle + per_m * tile.high_magnitude_m + error_m) {
+        return Height::above;
+    }
+    return Height::varies;
+}
+
+TileTracer::TileTracer(const Tree& tree, const DayPath& path) : walk_(std::make_unique<Walk>()) {
+    walk_->tree = &tree;
+    walk_->path = &path;
+    for (int axis = 0; axis < 3; ++axis)
+        walk_->sun[axis] = path.coordinates(axis);
+    walk_->steps = path.steps();
+    walk_->words = path.words();
+    walk_->ranges = range_terms(path);
+}
+
+TileTracer::~TileTracer() = default;
+TileTracer::TileTracer(TileTracer&&) noexcept = default;
+TileTracer& TileTracer::operator=(TileTracer&&) noexcept = default;
+
+void TileTracer::trace(std::span<const Receiver> receivers, int texels_per_tile,
+                       std::span<std::uint64_t> masks) {
+    assert(texels_per_tile >= 1 && texels_per_tile <= kMaxTexels);
+    const auto words = static_cast<std::size_t>(walk_->words);
+    assert(masks.size() == receivers.size() * words);
+    while (!receivers.empty()) {
+        // As many as look the same way; a hole in the chart ends the tile.
+        std::size_t count = 1;
+        while (count < std::min<std::size_t>(receivers.size(), texels_per_tile) &&
+               receivers[count].exists() == receivers[0].exists() &&
+               receivers[count].normal_ws == receivers[0].normal_ws)
+            ++count;
+        trace_tile(receivers.first(count), masks.first(count * words));
+        receivers = receivers.subspan(count);
+        masks = masks.subspan(count * words);
+    }
+}
+
+void TileTracer::trace_tile(std::span<const Receiver> receivers, std::span<std::uint64_t> masks) {
+    Walk& walk = *walk_;
+    const auto words = static_cast<std::size_t>(walk.words);
+    if (!receivers[0].exists()) {
+        const std::uint64_t last = ~std::uint64_t{0} >> (64 * walk.words - walk.steps);
+        for (std::size_t i = 0; i < masks.size(); ++i)
+            masks[i] = i % words + 1 == words ? last : ~std::uint64_t{0};
+        return;
+    }
+    if (!set_tile(walk.tile, *walk.tree, receivers)) {
+        const std::size_t half = receivers.size() / 2;
+        trace_tile(receivers.first(half), masks.first(half * words));
+        trace_tile(receivers.subspan(half), masks.subspan(half * words));
+        return;
+    }
+    open_steps(walk);
+    if (!walk.tree->nodes().empty() && walk.any_open(0, walk.steps - 1)) {
+        walk_tree(walk);
+        gather_hints(walk);
+    }
+    write_masks(walk, masks);
+}
+
+}  // namespace gnomon::interval

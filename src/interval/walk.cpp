@@ -1,0 +1,205 @@
+// One walk through the tree for all texels of a tile and all steps of a day.
+//
+// A ray tracer asks for each texel and step whether a triangle is in the way. Here each box is
+// asked which steps can see it from anywhere in the tile, and each triangle which steps it darkens
+// for which texels: boxes and triangles are fetched once for 64 texels and 256 steps, and where all
+// is dark already nothing is asked. Tracing many rays together as one volume goes back to J. Arvo,
+// D. Kirk, "Fast Ray Tracing by Ray Classification", SIGGRAPH 1987; here the volume is swept by the
+// sun, and its parts are steps of time.
+//
+// This file compiles itself for each instruction set (foreach_target.h), and the machine's best is
+// chosen when first called.
+
+#define HWY_TARGET_INCLUDE "interval/walk.cpp"
+// Registers of unknown size cannot be members of structures; such machines have others as well.
+#define HWY_DISABLED_TARGETS \
+    (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+//
+#include "interval/leaf.inl.h"
+#include "interval/walk.h"
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace gnomon::interval::HWY_NAMESPACE {
+
+/// Tests the waiting triangles at their steps, texel by texel.
+template <bool kMixed>
+void test_pairs(Walk& walk) {
+    Pairs& pairs = kMixed ? walk.mixed_pairs : walk.pairs;
+    const Tile& tile = walk.tile;
+    for (int e = 0; e < pairs.count; ++e) {
+        const int step = pairs.step[e];
+        const std::uint64_t lit = walk.lit[step];
+        if (lit == 0) continue;
+        const auto term = [&](int index) HWY_ATTR { return splat(pairs.terms[index][e]); };
+        const Vf error = term(kError), minus_error = hn::Neg(error);
+        std::uint64_t sure = 0, possible = 0;
+        for (int first = 0; first < tile.texels; first += kLanes) {
+            const Vf s = load(tile.s + first), t = load(tile.t + first);
+            const auto at_texels = [&](int center, int along_s, int along_t) HWY_ATTR {
+                return hn::MulAdd(s, term(along_s), hn::MulAdd(t, term(along_t), term(center)));
+            };
+            const Vf u = at_texels(kU, kUAlongS, kUAlongT);
+            const Vf v = at_texels(kV, kVAlongS, kVAlongT);
+            const Vf least = hn::Min(hn::Min(u, v), hn::Sub(hn::Sub(term(kDet), u), v));
+            Lanes hit = hn::Gt(least, error), may_hit = hn::Ge(least, minus_error);
+            if constexpr (kMixed) {
+                const Vf side = at_texels(kSide, kSideAlongS, kSideAlongT);
+                hit = hn::And(hit, hn::Gt(side, term(kSideError)));
+                may_hit = hn::And(may_hit, hn::Ge(side, hn::Neg(term(kSideError))));
+            }
+            sure |= std::uint64_t{bits_of(hit)} << first;
+            possible |= std::uint64_t{bits_of(may_hit)} << first;
+        }
+        if ((walk.masked(pairs.leaf[e]) >> pairs.lane[e] & 1) != 0) sure = 0;
+        const std::uint64_t unsure = possible & ~sure & lit;
+        if (unsure != 0) {
+            sure |= blocked_texels(walk, unsure, step, pairs.leaf[e], pairs.lane[e]);
+        }
+        walk.darken(step, sure);
+    }
+    pairs.count = 0;
+}
+
+/// Children that some step can see, nearest first.
+struct SeenChildren {
+    int count = 0;
+    struct Child {
+        float distance2;
+        Walk::Entry entry;
+    } children[kWidth];
+
+    /// Few of 16 are seen: inserting them is fastest.
+    HWY_INLINE void insert(const Child& child) {
+        int place = count++;
+        for (; place > 0 && children[place - 1].distance2 > child.distance2; --place)
+            children[place] = children[place - 1];
+        children[place] = child;
+    }
+};
+
+/// Boxes that reach above the tile's plane.
+HWY_INLINE Lanes above_tile(const Tile& tile, const Boxes& box) {
+    const auto highest = [&](Vf low, Vf high, int axis) HWY_ATTR {
+        return hn::Mul(splat(tile.normal[axis]), tile.normal[axis] > 0.0f ? high : low);
+    };
+    const Vf x = highest(box.lower.x, box.upper.x, 0);
+    const Vf y = highest(box.lower.y, box.upper.y, 1);
+    const Vf z = highest(box.lower.z, box.upper.z, 2);
+    const Vf error = hn::MulAdd(sum_of_magnitudes({x, y, z}), splat(kTermRoundings * kUnitRoundoff),
+                                splat(tile.touch_m));
+    return hn::Ge(hn::Add(x, hn::Add(y, z)), hn::Neg(error));
+}
+
+HWY_INLINE Vf distance2(const Boxes& box) {
+    const Vf zero = splat(0.0f);
+    const auto gap = [&](Vf low, Vf high)
+                         HWY_ATTR { return hn::Max(hn::Max(low, hn::Neg(high)), zero); };
+    const Vec3f gaps{gap(box.lower.x, box.upper.x), gap(box.lower.y, box.upper.y),
+                     gap(box.lower.z, box.upper.z)};
+    return dot(gaps, gaps);
+}
+
+HWY_INLINE void find_children(const Walk& walk, const Node& node, int first_step, int last_step,
+                              SeenChildren& seen) {
+    const Tile& tile = walk.tile;
+    alignas(64) float first[kLanes], last[kLanes], distances2[kLanes];
+    for (int lane0 = 0; lane0 < kWidth; lane0 += kLanes) {
+        const Vi child = hn::Load(Ints(), node.child + lane0);
+        const Boxes box{load3(node.lower, lane0) - splat3(tile.upper_m),
+                        load3(node.upper, lane0) - splat3(tile.lower_m)};
+        const Steps steps = cut(steps_towards(walk.ranges, box), first_step, last_step);
+        const Lanes present =
+            hn::RebindMask(Floats(), hn::Ne(child, hn::Set(Ints(), Node::kNoChild)));
+        std::uint32_t lanes = bits_of(hn::And(hn::And(present, steps.any), above_tile(tile, box)));
+        if (lanes == 0) continue;
+        hn::Store(steps.first, Floats(), first);
+        hn::Store(steps.last, Floats(), last);
+        hn::Store(distance2(box), Floats(), distances2);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            seen.insert({distances2[lane],
+                         {node.child[lane0 + lane], static_cast<std::int32_t>(first[lane]),
+                          static_cast<std::int32_t>(last[lane])}});
+        }
+    }
+}
+
+HWY_INLINE void visit_leaf(Walk& walk, const Leaf& leaf, std::int32_t id, int first_step,
+                           int last_step) {
+    for (int lane0 = 0; lane0 < kWidth && !std::isnan(leaf.corner[0][lane0]); lane0 += kLanes)
+        walk.leaves[walk.leaf_count++] = {&leaf, id, lane0, first_step, last_step};
+}
+
+template <typename T>
+HWY_INLINE void prefetch(const T& object) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&object);
+    for (std::size_t line = 0; line < sizeof(T); line += 64)
+        hwy::Prefetch(bytes + line);
+}
+
+template <bool kSingle>
+HWY_INLINE void walk_nodes(Walk& walk) {
+    const std::vector<Node>& nodes = walk.tree->nodes();
+    const std::vector<Leaf>& leaves = walk.tree->leaves();
+    visit_leaf(walk, walk.hint_leaf, kHintLeaf, 0, walk.steps - 1);
+    cast_leaves<kSingle>(walk);
+    test_pairs<false>(walk);
+    test_pairs<true>(walk);
+    int entries = 0;
+    walk.stack[entries++] = {0, 0, walk.steps - 1};
+    while (entries > 0) {
+        const Walk::Entry entry = walk.stack[--entries];
+        if (!walk.any_open(entry.first_step, entry.last_step)) continue;
+        if (entry.child < 0) {
+            const auto id = ~entry.child;
+            visit_leaf(walk, leaves[static_cast<std::size_t>(id)], id, entry.first_step,
+                       entry.last_step);
+            if (walk.leaf_count > (Walk::kLeafBatch - 1) * kVisits) cast_leaves<kSingle>(walk);
+            continue;
+        }
+        SeenChildren seen;
+        find_children(walk, nodes[static_cast<std::size_t>(entry.child)], entry.first_step,
+                      entry.last_step, seen);
+        for (int i = seen.count; i-- > 0;) {
+            const Walk::Entry& child = seen.children[i].entry;
+            walk.stack[entries++] = child;
+            if (child.child < 0) prefetch(leaves[static_cast<std::size_t>(~child.child)]);
+        }
+    }
+    cast_leaves<kSingle>(walk);
+    test_pairs<false>(walk);
+    test_pairs<true>(walk);
+}
+
+void walk_tree(Walk& walk) {
+    if (walk.tile.texels == 1) {
+        walk_nodes<true>(walk);
+    } else {
+        walk_nodes<false>(walk);
+    }
+}
+
+}  // namespace gnomon::interval::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace gnomon::interval {
+
+HWY_EXPORT(walk_tree);
+
+void walk_tree(Walk& walk) {
+    HWY_DYNAMIC_DISPATCH(walk_tree)(walk);
+}
+
+std::int64_t walk_targets() {
+    return HWY_TARGETS;
+}
+
+}  // namespace gnomon::interval
+#endif

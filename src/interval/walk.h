@@ -1,0 +1,177 @@
+#pragma once
+
+#include "interval/tile.h"
+#include "interval/tree.h"
+#include "trace/receiver.h"
+
+#include <array>
+#include <cstdint>
+
+namespace gnomon::interval {
+
+inline constexpr int kMaxTexels = TileTracer::kMaxTexels;
+
+/// Texels of one plane, in the tree's frame. The origin of a texel's rays is
+/// center + s * u_axis + t * v_axis, s and t in [-1, 1], but for `residual_m`.
+struct Tile {
+    const trace::Receiver* receivers = nullptr;
+    int texels = 0;
+    float center_m[3];
+    float u_axis_m[3], v_axis_m[3];
+    float normal[3];
+    alignas(64) float s[kMaxTexels], t[kMaxTexels];
+    float lower_m[3], upper_m[3];  ///< around the origins, with room for the tree's roundings
+    float residual_m = 0.0f;
+    /// Heights over the tile's plane, and distances from planes of triangles, that are smaller are
+    /// for double to judge: what lifts the origins, what trace::touches_only() tolerates, and what
+    /// float adds.
+    float touch_m = 0.0f;
+    // Heights of the receivers over the first one, and dot(|normal|, |position|) of them.
+    double low_height_m = 0.0, high_height_m = 0.0;
+    double low_magnitude_m = 0.0, high_magnitude_m = 0.0;
+};
+
+/// DayPath::Fit in the form in which boxes are compared with it. Slopes are squared with their
+/// sign; roundings are allowed for.
+struct RangeTerms {
+    float low_slope2 = 0.0f, high_slope2 = 0.0f;
+    float steps_per_rad = 0.0f;
+    float first_at_zero = 0.0f, last_at_zero = 0.0f;
+    float period_steps = 1.0f, periods_per_step = 1.0f;
+    float last_step = 0.0f;
+};
+
+/// Some triangles of a leaf, and the steps at which its box can be seen.
+struct LeafVisit {
+    const Leaf* leaf;
+    std::int32_t id;  ///< index into Tree::leaves(), or kHintLeaf
+    int first_lane;
+    int first_step, last_step;
+};
+inline constexpr std::int32_t kHintLeaf = -1;
+
+/// What is linear in the direction of the sun, for one triangle at one step.
+enum Term { kU, kV, kDet, kUAlongS, kUAlongT, kVAlongS, kVAlongT, kError, kEdgeTerms };
+/// On which side of the triangle's plane a texel is, where a tile has texels on both.
+enum SideTerm { kSide = kEdgeTerms, kSideAlongS, kSideAlongT, kSideError, kAllTerms };
+
+/// Triangles at steps that may darken some texels of the tile: to be tested texel by texel.
+struct Pairs {
+    static constexpr int kCapacity = 1024;
+    /// So many wait before they are tested: more darken less beforehand, fewer cost more calls.
+    static constexpr int kBatch = 24;
+
+    int count = 0;
+    // A vector more: they are written a vector at a time.
+    alignas(64) float terms[kAllTerms][kCapacity + kWidth];
+    std::int32_t step[kCapacity + kWidth];
+    std::int32_t leaf[kCapacity + kWidth];
+    std::int32_t lane[kCapacity + kWidth];
+};
+
+/// A triangle that has darkened texels: the next tile tries it first.
+struct Culprit {
+    int gain;
+    std::int32_t leaf;
+    int lane;
+};
+
+/// Everything that a walk through the tree reads and writes. Plain arrays: it is shared by code
+/// for different instruction sets.
+struct Walk {
+    static constexpr int kMaxWords = DayPath::kMaxSteps / 64;
+    /// Splitting ends at depth 64 + log2(triangles), and a node leaves 15 others behind.
+    static constexpr int kStack = (64 + 32) * kWidth;
+    /// Leaves that are tested together, so that the processor need not wait for each.
+    static constexpr int kLeafBatch = 8;
+    static constexpr int kMaxCulprits = 512;
+
+    const Tree* tree = nullptr;
+    const DayPath* path = nullptr;
+    const float* sun[3] = {};
+    int steps = 0, words = 0;
+    /// The steps that face receivers of this normal.
+    std::uint64_t facing[kMaxWords];
+    Vec3 facing_normal_ws{0.0f};
+    RangeTerms ranges;
+    Tile tile;
+
+    /// Bit i of lit[k]: texel i is not yet known to be dark at step k. Bit k of open: some are not.
+    alignas(64) std::uint64_t lit[DayPath::kMaxSteps];
+    std::uint64_t open[kMaxWords];
+
+    struct Entry {
+        std::int32_t child, first_step, last_step;
+    };
+    Entry stack[kStack];
+    LeafVisit leaves[kLeafBatch * kWidth];  ///< with registers of one lane, one for each triangle
+    int leaf_count = 0;
+    Pairs pairs;        ///< triangles that have all texels in front of them
+    Pairs mixed_pairs;  ///< those whose plane cuts the tile
+
+    Leaf hint_leaf = Leaf::empty();  ///< no triangles with holes
+    LeafIds hint_ids;
+    Culprit culprits[kMaxCulprits];
+    int culprit_count = 0;
+
+    trace::SurfaceId surface(std::int32_t leaf, int lane) const {
+        const LeafIds& ids =
+            leaf == kHintLeaf ? hint_ids : tree->leaf_ids()[static_cast<std::size_t>(leaf)];
+        return ids[static_cast<std::size_t>(lane)];
+    }
+    /// A bit for each triangle that has holes.
+    std::uint32_t masked(std::int32_t leaf) const {
+        return leaf == kHintLeaf ? 0 : tree->leaf_masked()[static_cast<std::size_t>(leaf)];
+    }
+    bool any_open(int first_step, int last_step) const {
+        const int first = first_step / 64, last = last_step / 64;
+        const std::uint64_t from = ~std::uint64_t{0} << (first_step % 64);
+        const std::uint64_t to = ~std::uint64_t{0} >> (63 - last_step % 64);
+        if (first == last) return (open[first] & from & to) != 0;
+        std::uint64_t any = (open[first] & from) | (open[last] & to);
+        for (int word = first + 1; word < last; ++word)
+            any |= open[word];
+        return any != 0;
+    }
+    /// The open steps of a word that are in [first_step, last_step].
+    std::uint64_t open_steps(int word, int first_step, int last_step) const {
+        std::uint64_t bits = open[word];
+        if (word == first_step / 64) bits &= ~std::uint64_t{0} << (first_step % 64);
+        if (word == last_step / 64) bits &= ~std::uint64_t{0} >> (63 - last_step % 64);
+        return bits;
+    }
+    void darken(int step, std::uint64_t texels) {
+        lit[step] &= ~texels;
+        open[step / 64] &= ~(std::uint64_t{lit[step] == 0} << (step % 64));
+    }
+    void credit(std::int32_t leaf, int lane, int gain) {
+        if (culprit_count > 0) {
+            Culprit& last = culprits[culprit_count - 1];
+            if (last.leaf == leaf && last.lane == lane) {
+                last.gain += gain;
+                return;
+            }
+        }
+        if (culprit_count < kMaxCulprits) culprits[culprit_count++] = {gain, leaf, lane};
+    }
+};
+
+/// Darkens the texels of walk.tile, wherever a triangle of the tree is in the way. Starts from
+/// walk.lit and walk.open; for the best instruction set of this machine.
+void walk_tree(Walk& walk);
+
+/// The instruction sets that walk_tree() is compiled for, as bits HWY_AVX2 and so on.
+std::int64_t walk_targets();
+
+// What float leaves to double.
+
+/// Those of `texels` at `step` for which the triangle is in the way.
+std::uint64_t blocked_texels(const Walk& walk, std::uint64_t texels, int step, std::int32_t leaf,
+                             int lane);
+
+/// Whether a triangle that is nearly in the tile's plane is in nobody's way, because it is on or
+/// below all receivers' planes.
+enum class Height { below, above, varies };
+Height height_over_tile(const Walk& walk, std::int32_t leaf, int lane);
+
+}  // namespace gnomon::interval
