@@ -19,7 +19,8 @@ SCENE = IMAGE | {"scene"}
 SUN = SCENE | {"sun"}
 GPU = IMAGE | {"gpu"}
 VISIBILITY = SCENE | GPU | {"raster", "trace", "interval", "visibility"}
-TECHNIQUE = VISIBILITY | {"technique"}
+BAKE = SUN | {"trace", "interval", "lightmap", "bake"}
+TECHNIQUE = VISIBILITY | BAKE | {"technique"}
 MODULES = {
     "base": BASE,
     "image": IMAGE,
@@ -28,12 +29,13 @@ MODULES = {
     "lightmap": SCENE | {"lightmap"},
     "trace": SCENE | {"trace"},
     "interval": SCENE | {"trace", "interval"},
+    "bake": BAKE,
     "gpu": GPU,
     "raster": SCENE | GPU | {"raster"},
     "visibility": VISIBILITY,
     "technique": TECHNIQUE,
     "lighting": VISIBILITY | {"lighting"},
-    "report": TECHNIQUE | {"sun", "lighting", "report"},
+    "report": TECHNIQUE | {"lighting", "report"},
 }
 ALL = set(MODULES)
 
@@ -44,6 +46,7 @@ PUBLIC = {
     "light": "scene", "scene": "scene",
     "sun": "sun", "light_path": "sun",
     "context": "gpu",
+    "bake": "bake", "sun_hours": "bake",
     "visibility": "visibility",
     "technique": "technique",
     "lighting": "lighting",
