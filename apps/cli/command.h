@@ -42,5 +42,6 @@ Command add_scene(CLI::App& program);
 Command add_render(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_bench(CLI::App& program);
+Command add_bake(CLI::App& program);
 
 }  // namespace gnomon::cli

@@ -8,10 +8,10 @@ std::vector<trace::Receiver> texel_receivers(const lightmap::Atlas& atlas,
     receivers.reserve(texels.texels.size());
     for (const lightmap::Texel& texel : texels.texels) {
         const lightmap::Facet& facet = atlas.facets[texel.facet];
-        receivers.push_back({.position_ws = Vec3(texel.point_ws),
-                             .normal_ws = Vec3(facet.normal_ws),
-                             .id = {atlas.charts[facet.chart].instance,
-                                    atlas.triangles[texel.triangle].triangle}});
+        receivers.push_back(
+            {.position_ws = Vec3(texel.point_ws),
+             .normal_ws = Vec3(facet.normal_ws),
+             .id = {atlas.charts[facet.chart].instance, atlas.triangles[texel.triangle].triangle}});
     }
     return receivers;
 }

@@ -34,5 +34,18 @@ Rgba8 blank_picture(Extent size, std::string_view name);
 /// Throws Error{machine} when memory runs out.
 std::vector<std::uint8_t> encode_png8(Extent size, int channels,
                                       std::span<const std::uint8_t> pixels);
+/// The same of 16-bit pixels.
+std::vector<std::uint8_t> encode_png16(Extent size, int channels,
+                                       std::span<const std::uint16_t> pixels);
+
+/// RGBA pixels as they are stored, for numbers that are no colours.
+struct Rgba16 {
+    Extent size;
+    std::vector<std::uint16_t> rgba;
+};
+
+/// An RGBA PNG of 8 or 16 bits, values as they are in the file. Throws Error{input} for others and
+/// for damaged ones, with `name` in front.
+Rgba16 decode_png_numbers(std::span<const std::uint8_t> bytes, std::string_view name);
 
 }  // namespace gnomon::image

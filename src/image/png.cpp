@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
@@ -128,6 +129,39 @@ Rgba8 decode_png(std::span<const std::uint8_t> bytes, std::string_view name) {
     return picture;
 }
 
+Rgba16 decode_png_numbers(std::span<const std::uint8_t> bytes, std::string_view name) {
+    Reader reader(bytes);
+    if (reader.info == nullptr) fail_machine("{}: out of memory for a PNG reader", name);
+    const auto require = [&](bool done) {
+        if (!done) fail_input("{}: is a damaged PNG: {}", name, reader.message.text.data());
+    };
+    require(guarded(reader.png, [&] { read_header(reader); }));
+    const Extent size{png_get_image_width(reader.png, reader.info),
+                      png_get_image_height(reader.png, reader.info)};
+    const int bits = png_get_bit_depth(reader.png, reader.info);
+    if (png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_RGBA || bits < 8 ||
+        png_get_interlace_type(reader.png, reader.info) != PNG_INTERLACE_NONE) {
+        fail_input("{}: is no RGBA PNG of 8 or 16 bits, row by row", name);
+    }
+    check_decoded_size(size, bytes.size(), kMaxPixelsPerByte, name);
+    require(guarded(reader.png, [&] {
+        if (bits == 16 && std::endian::native == std::endian::little) png_set_swap(reader.png);
+        png_read_update_info(reader.png, reader.info);
+    }));
+    const std::size_t row_values = kChannelsRgba * size.width;
+    const std::size_t row_bytes = row_values * static_cast<std::size_t>(bits / 8);
+    std::vector<std::uint8_t> rows(row_bytes * size.height);
+    std::uint8_t* first = rows.data();
+    require(guarded(reader.png, [&] { read_rows(reader, first, row_bytes); }));
+    Rgba16 picture{size, std::vector<std::uint16_t>(row_values * size.height)};
+    if (bits == 16) {
+        std::memcpy(picture.rgba.data(), rows.data(), rows.size());
+    } else {
+        std::ranges::copy(rows, picture.rgba.begin());
+    }
+    return picture;
+}
+
 // Writing.
 
 namespace {
@@ -174,25 +208,39 @@ int colour_type(int channels) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_png8(Extent size, int channels,
-                                      std::span<const std::uint8_t> pixels) {
-    constexpr int kBits = 8;
-    const std::size_t row_bytes = static_cast<std::size_t>(channels) * size.width;
+namespace {
+
+/// `rows`: bytes of each row, one after the other.
+std::vector<std::uint8_t> encode(Extent size, int channels, int bits, const std::uint8_t* rows) {
+    const std::size_t row_bytes =
+        static_cast<std::size_t>(channels) * size.width * static_cast<std::size_t>(bits / 8);
     Writer writer;
     if (writer.info == nullptr) fail_machine("out of memory for a PNG writer");
     const bool done = guarded(writer.png, [&] {
         png_set_write_fn(writer.png, &writer, write_bytes, nullptr);
         png_set_user_limits(writer.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-        png_set_IHDR(writer.png, writer.info, size.width, size.height, kBits, colour_type(channels),
+        png_set_IHDR(writer.png, writer.info, size.width, size.height, bits, colour_type(channels),
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_write_info(writer.png, writer.info);
-        for (unsigned y = 0; y < size.height; ++y) {
-            png_write_row(writer.png, pixels.data() + y * row_bytes);
-        }
+        if (bits == 16 && std::endian::native == std::endian::little) png_set_swap(writer.png);
+        for (unsigned y = 0; y < size.height; ++y)
+            png_write_row(writer.png, rows + y * row_bytes);
         png_write_end(writer.png, writer.info);
     });
     if (!done) fail_machine("PNG cannot be encoded: {}", writer.message.text.data());
     return std::move(writer.bytes);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_png8(Extent size, int channels,
+                                      std::span<const std::uint8_t> pixels) {
+    return encode(size, channels, 8, pixels.data());
+}
+
+std::vector<std::uint8_t> encode_png16(Extent size, int channels,
+                                       std::span<const std::uint16_t> pixels) {
+    return encode(size, channels, 16, reinterpret_cast<const std::uint8_t*>(pixels.data()));
 }
 
 }  // namespace image

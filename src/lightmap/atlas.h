@@ -93,4 +93,7 @@ Atlas make_atlas(const Scene& scene, const Options& options = {});
 /// area are left out.
 Scene with_lightmap(const Scene& scene, const Atlas& atlas);
 
+/// The page of each mesh of that scene.
+std::vector<std::uint32_t> lightmapped_pages(const Scene& scene, const Atlas& atlas);
+
 }  // namespace gnomon::lightmap

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -134,6 +135,17 @@ private:
 
 Scene with_lightmap(const Scene& scene, const Atlas& atlas) {
     return Scene(Rewriter(scene, atlas).run());
+}
+
+// As Rewriter adds meshes: by instance, by page.
+std::vector<std::uint32_t> lightmapped_pages(const Scene& scene, const Atlas& atlas) {
+    std::vector<std::set<std::uint32_t>> pages(scene.instances().size());
+    for (const Chart& chart : atlas.charts)
+        pages[chart.instance].insert(chart.page);
+    std::vector<std::uint32_t> result;
+    for (const std::set<std::uint32_t>& of_instance : pages)
+        result.insert(result.end(), of_instance.begin(), of_instance.end());
+    return result;
 }
 
 }  // namespace gnomon::lightmap

@@ -2,8 +2,8 @@
 
 #include "base/check.h"
 #include "base/file.h"
+#include "base/folder.h"
 #include "base/parallel.h"
-#include "report/folder.h"
 #include "report/layout.h"
 #include "report/page.h"
 #include "report/results_json.h"
@@ -81,10 +81,23 @@ void fill_folder(const fs::path& folder, const ComparisonReport& report, Progres
     throw_if_cancelled(progress, "writing the report");
 }
 
+FolderKind report_kind() {
+    return {
+        .noun = "report",
+        .mark = "results.json",
+        .has_entry = [](std::string_view name) { return name == "images" || name == "index.html"; },
+        .is_mark = &report::is_results_json};
+}
+
 }  // namespace
 
+void check_report_folder(const fs::path& folder) {
+    check_replaceable(folder, report_kind());
+}
+
 void write_report(const fs::path& folder, const ComparisonReport& report, Progress& progress) {
-    replace_folder(folder, [&](const fs::path& fresh) { fill_folder(fresh, report, progress); });
+    replace_folder(folder, report_kind(),
+                   [&](const fs::path& fresh) { fill_folder(fresh, report, progress); });
 }
 
 }  // namespace gnomon

@@ -1,26 +1,18 @@
-#include "report/folder.h"
-
-#include <gnomon/report.h>
+#include "base/folder.h"
 
 #include "base/check.h"
-#include "report/results_json.h"
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <string_view>
+#include <string>
 #include <system_error>
+#include <utility>
 
 namespace gnomon {
-
-namespace report {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array<std::string_view, 3> kReportEntries = {"images", "index.html", "results.json"};
 
 /// A folder that is removed with all it holds when it goes out of scope, unless let go.
 class TemporaryFolder {
@@ -47,16 +39,16 @@ private:
 
 /// The folder's own path, links resolved and a trailing slash dropped, so that a suffix to it names
 /// a folder beside it.
-fs::path own_path(const fs::path& folder) {
-    if (folder.empty()) fail_input("the report's folder has no name");
+fs::path own_path(const fs::path& folder, const FolderKind& kind) {
+    if (folder.empty()) fail_input("the {}'s folder has no name", kind.noun);
     std::error_code error;
     fs::path own = fs::weakly_canonical(folder, error);
     if (error) fail_input("{}: {}", folder.string(), error.message());
     return own.has_filename() ? own : own.parent_path();
 }
 
-/// Throws unless `folder` is missing, empty or a report and nothing more.
-void check_replaceable(const fs::path& folder) {
+/// Throws unless `folder` is missing, empty or of its kind and nothing more.
+void check_own(const fs::path& folder, const FolderKind& kind) {
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
     if (!fs::exists(status)) return;
@@ -70,14 +62,14 @@ void check_replaceable(const fs::path& folder) {
     if (entries == fs::directory_iterator()) return;
     for (const fs::directory_entry& entry : entries) {
         const std::string name = entry.path().filename().string();
-        if (std::find(kReportEntries.begin(), kReportEntries.end(), name) == kReportEntries.end()) {
-            fail_input("{}: holds \"{}\", which is no part of a report: name an empty folder",
-                       folder.string(), name);
+        if (name != kind.mark && !kind.has_entry(name)) {
+            fail_input("{}: holds \"{}\", which is no part of a {}: name an empty folder",
+                       folder.string(), name, kind.noun);
         }
     }
-    if (!is_results_json(folder / "results.json")) {
-        fail_input("{}: holds files but no results.json of a report: name an empty folder",
-                   folder.string());
+    if (!kind.is_mark(folder / kind.mark)) {
+        fail_input("{}: holds files but no {} of a {}: name an empty folder", folder.string(),
+                   kind.mark, kind.noun);
     }
 }
 
@@ -106,20 +98,19 @@ void put_in_place(const fs::path& fresh, const fs::path& folder) {
 
 }  // namespace
 
-void replace_folder(const fs::path& folder, const std::function<void(const fs::path&)>& fill) {
-    const fs::path target = own_path(folder);
-    check_replaceable(target);
+void replace_folder(const fs::path& folder, const FolderKind& kind,
+                    const std::function<void(const fs::path&)>& fill) {
+    const fs::path target = own_path(folder, kind);
+    check_own(target, kind);
     TemporaryFolder temporary(with_suffix(target, ".part"));
     fill(temporary.path());
-    check_replaceable(target);  // filling takes a while, and the folder may have got other files
+    check_own(target, kind);  // filling takes a while, and the folder may have got other files
     put_in_place(temporary.path(), target);
     temporary.let_go();
 }
 
-}  // namespace report
-
-void check_report_folder(const std::filesystem::path& folder) {
-    report::check_replaceable(report::own_path(folder));
+void check_replaceable(const fs::path& folder, const FolderKind& kind) {
+    check_own(own_path(folder, kind), kind);
 }
 
 }  // namespace gnomon

@@ -1,0 +1,135 @@
+#include <gnomon/bake.h>
+
+#include "command.h"
+#include "fail.h"
+#include "flags.h"
+#include "help.h"
+#include "output.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+namespace gnomon::cli {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  gnomon bake courtyard --sun place=48.137,11.575,date=2026-06-21 --texel 0.1 -o day
+  gnomon bake city.glb --sun place=52.0,4.36,date=2026-12-21,utc=+01:00,north=-30 --bits 16 -o winter
+  gnomon bake city.glb --sun place=52.0,4.36,date=2026-12-21 --texel 0.25 -o winter --resume
+
+--sun takes place=LATITUDE,LONGITUDE[,HEIGHT] and date=YEAR-MONTH-DAY, and may take utc=OFFSET (the
+clock; else the whole hour nearest to the sun's own time), north=DEGREES (the azimuth of true north
+in the scene) and steps=N. gnomon web makes a page of a bake.)";
+
+constexpr int kSteps8 = 255;
+constexpr int kSteps16 = 1023;
+
+struct BakeFlags {
+    std::string scene, sun, output;
+    double texel_m = 0.1;
+    int bits = 8;
+    int pairs = 4;
+    bool resume = false;
+    bool ignore_alpha = false;
+};
+
+BakePath path_of(const BakeFlags& flags) {
+    constexpr std::array<Key, 5> kKeys{
+        {{"place", true}, {"date", true}, {"utc"}, {"north"}, {"steps"}}};
+    const KeyValues sun("--sun", flags.sun, kKeys, "place=48.137,11.575,date=2026-06-21");
+    const Place place = parse_place(sun.label("place"), sun.text("place", ""));
+    const auto date = parse_date(sun.label("date"), sun.text("date", ""));
+    const int most_steps = flags.bits == 8 ? kSteps8 : kSteps16;
+    SunPathOptions options;
+    options.steps =
+        static_cast<int>(sun.has("steps") ? parse_integer(sun.label("steps"), sun.text("steps", ""),
+                                                          {1, static_cast<double>(most_steps)})
+                                          : most_steps);
+    options.frame.north_deg = sun.number("north", {-360.0, 360.0, "degrees"}, 0.0);
+    const std::chrono::minutes offset =
+        sun.has("utc") ? parse_utc_offset(sun.label("utc"), sun.text("utc", ""))
+                       : nearest_utc_offset(place);
+    return bake_path(sun_path(place, date, offset, options), sun.text("place", ""),
+                     sun.text("date", ""));
+}
+
+std::string summary(const IntervalBake& bake, const std::string& folder) {
+    const BakeReport& report = bake.report;
+    std::string text = fmt::format("{}\n", bake.path.summary);
+    text += fmt::format("{} texels on {} page{}, {} with sun, up to {} intervals\n", report.texels,
+                        bake.pages.size(), bake.pages.size() == 1 ? "" : "s", report.lit_texels,
+                        report.most_intervals);
+    if (report.closed_gaps > 0) {
+        text +=
+            fmt::format("{} gaps closed for want of pairs: {:.4f} % of the time of all texels\n",
+                        report.closed_gaps, 100.0 * report.closed_share);
+    }
+    return text + fmt::format("bake: {}\n", folder);
+}
+
+void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& progress) {
+    if (flags.scene.empty()) fail_usage("bake: SCENE is missing");
+    if (flags.sun.empty())
+        fail_usage("bake: --sun is missing, as in --sun place=48.137,11.575,date=2026-06-21");
+    if (flags.output.empty()) fail_usage("bake: -o is missing, as in -o day");
+    if (flags.bits != 8 && flags.bits != 16)
+        fail_usage("--bits: {}; it must be 8 or 16", flags.bits);
+    check_bake_folder(flags.output);
+    const BakePath path = path_of(flags);
+    if (path.steps() == 0) {
+        print(fmt::format("{}\nno sun, no bake\n", path.summary));
+        return;
+    }
+    BakeOptions options{.texel_size_m = flags.texel_m,
+                        .bits = static_cast<BakeBits>(flags.bits),
+                        .most_pairs = flags.pairs,
+                        .ignore_alpha = flags.ignore_alpha};
+    const std::filesystem::path part = flags.output + ".unfinished";
+    std::error_code ignored;
+    if (!flags.resume) std::filesystem::remove(part, ignored);
+    options.resume_file = part;
+    const Scene scene = load(flags.scene, session, progress);
+    try {
+        const IntervalBake bake = bake_intervals(scene, path, options, progress);
+        progress.clear();
+        for (const std::string& warning : bake.report.warnings)
+            print_warning(warning);
+        write_bake(flags.output, bake);
+        print(summary(bake, flags.output));
+    } catch (const Error& error) {
+        const bool is_kept = std::filesystem::exists(part, ignored);
+        if (error.kind() != ErrorKind::cancelled || !is_kept) throw;
+        throw Error(
+            ErrorKind::cancelled,
+            fmt::format("{}; what is done is kept: --resume goes on with it", error.what()));
+    }
+}
+
+}  // namespace
+
+Command add_bake(CLI::App& program) {
+    CLI::App* const app =
+        add_command(program, "bake", "Bake when each texel of a static scene sees the sun of a day",
+                    "gnomon bake SCENE --sun place=..,date=.. [--texel M] -o DIR", kExamples);
+    const auto flags = std::make_shared<BakeFlags>();
+    app->add_option("SCENE", flags->scene, "a .gltf, .glb or .obj file, or a built-in scene");
+    app->add_option("--sun", flags->sun, "place=..,date=..[,utc=..][,north=..][,steps=..]")
+        ->type_name("WHERE,WHEN");
+    add_number(*app, "--texel", flags->texel_m, {1e-6, 1e6}, "side of a texel, metres");
+    add_integer(*app, "--bits", flags->bits, {8, 16}, "of a time: 8, or 16");
+    add_integer(*app, "--pairs", flags->pairs, {1, 16},
+                "most pairs of textures, four intervals each");
+    app->add_flag("--ignore-alpha", flags->ignore_alpha, "take masked materials for solid");
+    app->add_flag("--resume", flags->resume, "go on with an interrupted bake");
+    app->add_option("-o,--output", flags->output, "the folder to write")->type_name("DIR");
+    return {app, [flags](const Session& session, ConsoleProgress& progress) {
+                run_bake(*flags, session, progress);
+            }};
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <gnomon/math.h>
+#include <gnomon/progress.h>
+#include <gnomon/scene.h>
+#include <gnomon/sun.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+/// Occlusion interval maps: when, on a light's known path, each texel of a static scene sees it.
+/// W. Donnelly, J. Demers, "Generating Soft Shadows Using Occlusion Interval Maps", GPU Gems, 2004,
+/// chapter 13. docs/bakes.md tells of the files.
+namespace gnomon {
+
+/// The way of a light that is far away, in even steps of time. Step k is the span [k, k + 1) and
+/// the direction that of its middle.
+struct BakePath {
+    std::vector<DVec3> to_light_ws;     ///< unit vectors, 1 to 1023
+    DVec3 pole_ws{0.0, 1.0, 0.0};       ///< what the light turns about, as near as can be
+    double begin_s = 0.0, end_s = 0.0;  ///< the clock before the first step and after the last,
+                                        ///< since local midnight
+    double angular_diameter_rad = 0.0;  ///< of the light's disc
+    std::string place, date;            ///< as the user gave them; empty for a light that is no sun
+    std::string summary;                ///< in words, one line
+
+    int steps() const { return static_cast<int>(to_light_ws.size()); }
+};
+
+/// The sun's path of a day; no steps in a polar night.
+BakePath bake_path(const SunPath& path, std::string place, std::string date);
+
+enum class BakeBits {
+    eight = 8,     ///< exact to the step, of which there are at most 255
+    sixteen = 16,  ///< exact to a 64th of a step
+};
+
+struct BakeOptions {
+    double texel_size_m = 0.1;
+    BakeBits bits = BakeBits::eight;
+    int most_pairs = 4;  ///< of textures; each pair holds four intervals; 1 to 16
+    bool ignore_alpha = false;
+    std::uint64_t memory_limit_bytes = 0;  ///< 0 = the machine's memory
+    /// Where an interrupted bake keeps what it has, and finds it again; empty: nowhere.
+    std::filesystem::path resume_file;
+};
+
+/// The intervals of one page's texels, in codes: times in units of 1 / codes_per_step of a step.
+struct IntervalPage {
+    static constexpr std::uint16_t kNoRise = std::numeric_limits<std::uint16_t>::max();
+
+    unsigned side_texels = 0;
+    int pairs = 1;
+    /// pairs x side x side x 4, rows from the top: channel c of pair p begins and ends interval
+    /// 4 p + c. Where there is none the rise is kNoRise and the fall 0. Texels beside charts repeat
+    /// what is nearest.
+    std::vector<std::uint16_t> rises, falls;
+};
+
+struct BakeReport {
+    std::uint64_t texels = 0, lit_texels = 0, intervals = 0;
+    int most_intervals = 0;         ///< of a texel
+    std::uint64_t closed_gaps = 0;  ///< for want of pairs
+    double closed_share = 0.0;      ///< of all texels' time, lit where it is dark
+    std::vector<std::string> warnings;
+};
+
+struct IntervalBake {
+    Scene scene;                            ///< TEXCOORD_1 is the place on the page
+    std::vector<std::uint32_t> mesh_pages;  ///< the page of each mesh
+    BakePath path;
+    BakeBits bits = BakeBits::eight;
+    std::vector<IntervalPage> pages;
+    BakeReport report;
+
+    int codes_per_step() const { return bits == BakeBits::eight ? 1 : 64; }
+};
+
+/// Bakes on all threads; the result is the same for any number of them. Throws Error{input} for
+/// options out of range, for a scene without area or of more texels than fit in memory, saying what
+/// would; Error{cancelled}, after `resume_file` is written.
+IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
+                            Progress& progress);
+
+/// Writes DIR/bake.json, scene.glb and the textures; the folder appears whole or not at all, and
+/// replaces an older bake there. Throws Error{input} when it holds anything else, Error{machine}.
+void write_bake(const std::filesystem::path& folder, const IntervalBake& bake);
+
+/// To be asked before a bake: whether write_bake() can put its folder there. Throws Error{input}.
+void check_bake_folder(const std::filesystem::path& folder);
+
+/// Throws Error{input} naming the file and the fault.
+IntervalBake read_bake(const std::filesystem::path& folder);
+
+/// How much of a light whose disc covers `width_steps` of its path, centred at `at_step`, the texel
+/// sees. `even`: as if it were a line along the path, as in listing 13-1; else as a disc.
+double interval_visibility(const IntervalPage& page, unsigned x, unsigned y, double at_step,
+                           double width_steps, int codes_per_step, bool even);
+
+}  // namespace gnomon

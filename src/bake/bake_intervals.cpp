@@ -1,0 +1,183 @@
+#include <gnomon/bake.h>
+
+#include "bake/day_masks.h"
+#include "bake/interval_codes.h"
+#include "bake/texel_receivers.h"
+#include "base/check.h"
+#include "base/parallel.h"
+#include "interval/mask.h"
+#include "lightmap/dilate.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+namespace gnomon {
+
+namespace {
+
+constexpr std::size_t kIntervalsPerPair = 4;
+constexpr int kMostPairs = 16;
+
+void check(const BakePath& path, const BakeOptions& options) {
+    const int most_steps = options.bits == BakeBits::eight ? 255 : 1023;
+    if (path.to_light_ws.empty()) fail_input("bake: the light is never up: {}", path.summary);
+    if (path.steps() > most_steps) {
+        fail_input("bake: {} steps; with {} bits there can be at most {}", path.steps(),
+                   static_cast<int>(options.bits), most_steps);
+    }
+    if (options.most_pairs < 1 || options.most_pairs > kMostPairs) {
+        fail_input("bake: {} pairs of textures; there can be 1 to {}", options.most_pairs,
+                   kMostPairs);
+    }
+}
+
+/// When each texel sees the light, one after the other.
+struct TexelIntervals {
+    std::vector<std::vector<bake::CodedInterval>> texels;
+    BakeReport report;
+};
+
+TexelIntervals coded(const interval::DayMasks& masks, std::size_t count, int codes_per_step,
+                     std::size_t most) {
+    TexelIntervals result;
+    result.texels.resize(count);
+    std::uint64_t closed = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::vector<bake::CodedInterval>& texel = result.texels[i];
+        for (const interval::Interval& lit : interval::intervals(masks.mask(i))) {
+            texel.push_back({static_cast<std::uint16_t>(lit.rise * codes_per_step),
+                             static_cast<std::uint16_t>(lit.fall * codes_per_step)});
+        }
+        BakeReport& report = result.report;
+        report.lit_texels += texel.empty() ? 0 : 1;
+        report.intervals += texel.size();
+        report.most_intervals = std::max(report.most_intervals, static_cast<int>(texel.size()));
+        if (texel.size() > most) report.closed_gaps += texel.size() - most;
+        closed += bake::close_gaps(texel, most);
+    }
+    result.report.texels = count;
+    const double all = static_cast<double>(count) * masks.steps * codes_per_step;
+    result.report.closed_share = all > 0.0 ? static_cast<double>(closed) / all : 0.0;
+    return result;
+}
+
+IntervalPage blank_page(unsigned side, int pairs) {
+    IntervalPage page{.side_texels = side, .pairs = pairs, .rises = {}, .falls = {}};
+    const std::size_t values = std::size_t{side} * side * kIntervalsPerPair * pairs;
+    page.rises.assign(values, IntervalPage::kNoRise);
+    page.falls.assign(values, 0);
+    return page;
+}
+
+std::size_t value_index(const IntervalPage& page, std::size_t texel, std::size_t interval) {
+    const std::size_t per_pair = std::size_t{page.side_texels} * page.side_texels;
+    return ((interval / kIntervalsPerPair) * per_pair + texel) * kIntervalsPerPair +
+           interval % kIntervalsPerPair;
+}
+
+void put(IntervalPage& page, std::size_t texel, const std::vector<bake::CodedInterval>& intervals) {
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+        page.rises[value_index(page, texel, i)] = intervals[i].rise;
+        page.falls[value_index(page, texel, i)] = intervals[i].fall;
+    }
+}
+
+std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const lightmap::Texels& texels,
+                                   const TexelIntervals& intervals) {
+    constexpr std::uint32_t kNone = lightmap::kNoTexel;
+    std::vector<IntervalPage> pages;
+    std::vector<std::vector<std::uint32_t>> owner;  // the texel of each place
+    std::size_t used = 1;
+    for (const auto& texel : intervals.texels)
+        used = std::max(used, texel.size());
+    const int pairs = static_cast<int>((used + kIntervalsPerPair - 1) / kIntervalsPerPair);
+    for (const unsigned side : atlas.page_sides_texels) {
+        pages.push_back(blank_page(side, pairs));
+        owner.emplace_back(std::size_t{side} * side, kNone);
+    }
+    for (std::uint32_t i = 0; i < texels.texels.size(); ++i) {
+        const lightmap::Texel& texel = texels.texels[i];
+        const std::uint32_t page = atlas.charts[atlas.facets[texel.facet].chart].page;
+        owner[page][std::size_t{texel.y} * pages[page].side_texels + texel.x] = i;
+    }
+    for (std::uint32_t p = 0; p < pages.size(); ++p) {
+        const std::vector<std::uint32_t> sources =
+            lightmap::dilation_sources(atlas, texels, p, atlas.options.padding_texels);
+        lightmap::dilate(std::span(owner[p]), sources);
+        for (std::size_t place = 0; place < owner[p].size(); ++place) {
+            if (owner[p][place] != kNone) put(pages[p], place, intervals.texels[owner[p][place]]);
+        }
+    }
+    return pages;
+}
+
+}  // namespace
+
+BakePath bake_path(const SunPath& path, std::string place, std::string date) {
+    BakePath result;
+    result.pole_ws = path.pole_ws;
+    result.place = std::move(place);
+    result.date = std::move(date);
+    result.summary = path.summary;
+    if (path.steps.empty()) return result;
+    for (const SunStep& step : path.steps)
+        result.to_light_ws.push_back(step.to_sun_ws);
+    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+    result.angular_diameter_rad = kRadPerDeg * path.noon_sun.angular_diameter_deg;
+    const auto clock_s = [&](const CivilTime& time) {
+        const auto local = time.utc + time.utc_offset;
+        const auto noon_local = path.noon.utc + path.noon.utc_offset;
+        const auto midnight = std::chrono::floor<std::chrono::days>(noon_local);
+        return std::chrono::duration<double>(local - midnight).count();
+    };
+    const double first_s = clock_s(path.steps.front().time);
+    const double half_s = 0.5 * path.times.daylight_s / static_cast<double>(path.steps.size());
+    result.begin_s = first_s - half_s;
+    result.end_s = result.begin_s + path.times.daylight_s;
+    return result;
+}
+
+IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
+                            Progress& progress) {
+    check(path, options);
+    const lightmap::Atlas atlas = lightmap::make_atlas(
+        scene,
+        {.texel_size_m = options.texel_size_m, .memory_limit_bytes = options.memory_limit_bytes},
+        progress);
+    const lightmap::Texels texels = lightmap::make_texels(scene, atlas, progress);
+    const std::vector<trace::Receiver> receivers = bake::texel_receivers(atlas, texels);
+    const interval::Frame frame = interval::frame_around(path.pole_ws);
+    const interval::DayPath day(path.to_light_ws, frame);
+    const interval::Tree tree(scene, frame, options.ignore_alpha, progress);
+    const interval::DayMasks masks =
+        bake::day_masks(tree, day, receivers, options.resume_file,
+                        bake::fingerprint(scene, day, options.ignore_alpha, receivers), progress);
+
+    IntervalBake result;
+    result.bits = options.bits;
+    result.path = path;
+    TexelIntervals intervals =
+        coded(masks, receivers.size(), result.codes_per_step(),
+              kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs));
+    result.pages = pages_of(atlas, texels, intervals);
+    result.report = std::move(intervals.report);
+    result.report.warnings = atlas.warnings;
+    result.scene = lightmap::with_lightmap(scene, atlas);
+    result.mesh_pages = lightmap::lightmapped_pages(scene, atlas);
+    return result;
+}
+
+double interval_visibility(const IntervalPage& page, unsigned x, unsigned y, double at_step,
+                           double width_steps, int codes_per_step, bool even) {
+    const std::size_t texel = std::size_t{y} * page.side_texels + x;
+    double seen = 0.0;
+    for (std::size_t i = 0; i < kIntervalsPerPair * static_cast<std::size_t>(page.pairs); ++i) {
+        const std::size_t at = value_index(page, texel, i);
+        seen += bake::seen_part(page.rises[at], page.falls[at], at_step * codes_per_step,
+                                width_steps * codes_per_step, even);
+    }
+    return std::min(seen, 1.0);
+}
+
+}  // namespace gnomon

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace gnomon::bake {
+
+/// When a texel sees the light, in codes: units of a fixed part of a step.
+struct CodedInterval {
+    std::uint16_t rise = 0, fall = 0;
+    bool operator==(const CodedInterval&) const = default;
+};
+
+/// Joins neighbours, over the shortest gaps first, until there are at most `most` of them. Returns
+/// the codes that were dark and are now lit. Intervals are in order of time and do not touch.
+std::uint64_t close_gaps(std::vector<CodedInterval>& intervals, std::size_t most);
+
+/// The part of a window of `width` around `at` that lies in [rise, fall): each moment counts alike
+/// when `even`, else as much as a disc that covers the window is high there. In [0, 1].
+double seen_part(double rise, double fall, double at, double width, bool even);
+
+}  // namespace gnomon::bake
