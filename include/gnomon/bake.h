@@ -38,6 +38,11 @@ enum class BakeBits {
     sixteen = 16,  ///< exact to a 64th of a step
 };
 
+/// The parts of a step that a code tells apart.
+constexpr int codes_per_step(BakeBits bits) {
+    return bits == BakeBits::eight ? 1 : 64;
+}
+
 struct BakeOptions {
     double texel_size_m = 0.1;
     BakeBits bits = BakeBits::eight;
@@ -76,7 +81,7 @@ struct IntervalBake {
     std::vector<IntervalPage> pages;
     BakeReport report;
 
-    int codes_per_step() const { return bits == BakeBits::eight ? 1 : 64; }
+    int codes_per_step() const { return gnomon::codes_per_step(bits); }
 };
 
 /// Bakes on all threads; the result is the same for any number of them. Throws Error{input} for
@@ -95,9 +100,16 @@ void check_bake_folder(const std::filesystem::path& folder);
 /// Throws Error{input} naming the file and the fault.
 IntervalBake read_bake(const std::filesystem::path& folder);
 
-/// How much of a light whose disc covers `width_steps` of its path, centred at `at_step`, the texel
-/// sees. `even`: as if it were a line along the path, as in listing 13-1; else as a disc.
-double interval_visibility(const IntervalPage& page, unsigned x, unsigned y, double at_step,
-                           double width_steps, int codes_per_step, bool even);
+/// The part of the path that a light covers.
+struct LightWindow {
+    double at_step = 0.0;      ///< of its centre
+    double width_steps = 0.0;  ///< of its disc
+    int codes_per_step = 1;    ///< of the bake
+    bool even = false;  ///< as if it were a line along the path, as in listing 13-1, not a disc
+};
+
+/// How much of the light the texel sees, in [0, 1].
+double interval_visibility(const IntervalPage& page, unsigned x, unsigned y,
+                           const LightWindow& window);
 
 }  // namespace gnomon

@@ -1,5 +1,6 @@
 #include <gnomon/bake.h>
 
+#include "bake/baked_texels.h"
 #include "bake/day_masks.h"
 #include "bake/interval_codes.h"
 #include "bake/texel_receivers.h"
@@ -138,44 +139,57 @@ BakePath bake_path(const SunPath& path, std::string place, std::string date) {
     return result;
 }
 
-IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
-                            Progress& progress) {
+namespace bake {
+
+BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOptions& options,
+                         Progress& progress) {
     check(path, options);
-    const lightmap::Atlas atlas = lightmap::make_atlas(
+    BakedTexels baked;
+    baked.atlas = lightmap::make_atlas(
         scene,
         {.texel_size_m = options.texel_size_m, .memory_limit_bytes = options.memory_limit_bytes},
         progress);
-    const lightmap::Texels texels = lightmap::make_texels(scene, atlas, progress);
-    const std::vector<trace::Receiver> receivers = bake::texel_receivers(atlas, texels);
+    const lightmap::Texels texels = lightmap::make_texels(scene, baked.atlas, progress);
+    const std::vector<trace::Receiver> receivers = texel_receivers(baked.atlas, texels);
     const interval::Frame frame = interval::frame_around(path.pole_ws);
     const interval::DayPath day(path.to_light_ws, frame);
     const interval::Tree tree(scene, frame, options.ignore_alpha, progress);
     const interval::DayMasks masks =
-        bake::day_masks(tree, day, receivers, options.resume_file,
-                        bake::fingerprint(scene, day, options.ignore_alpha, receivers), progress);
-
-    IntervalBake result;
-    result.bits = options.bits;
-    result.path = path;
+        day_masks(tree, day, receivers, options.resume_file,
+                  fingerprint(scene, day, options.ignore_alpha, receivers), progress);
     TexelIntervals intervals =
-        coded(masks, receivers.size(), result.codes_per_step(),
+        coded(masks, receivers.size(), codes_per_step(options.bits),
               kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs));
-    result.pages = pages_of(atlas, texels, intervals);
-    result.report = std::move(intervals.report);
-    result.report.warnings = atlas.warnings;
-    result.scene = lightmap::with_lightmap(scene, atlas);
-    result.mesh_pages = lightmap::lightmapped_pages(scene, atlas);
+    baked.pages = pages_of(baked.atlas, texels, intervals);
+    baked.report = std::move(intervals.report);
+    baked.report.warnings = baked.atlas.warnings;
+    return baked;
+}
+
+}  // namespace bake
+
+IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
+                            Progress& progress) {
+    bake::BakedTexels baked = bake::baked_texels(scene, path, options, progress);
+    IntervalBake result;
+    result.scene = lightmap::with_lightmap(scene, baked.atlas);
+    result.mesh_pages = lightmap::lightmapped_pages(scene, baked.atlas);
+    result.path = path;
+    result.bits = options.bits;
+    result.pages = std::move(baked.pages);
+    result.report = std::move(baked.report);
     return result;
 }
 
-double interval_visibility(const IntervalPage& page, unsigned x, unsigned y, double at_step,
-                           double width_steps, int codes_per_step, bool even) {
+double interval_visibility(const IntervalPage& page, unsigned x, unsigned y,
+                           const LightWindow& window) {
     const std::size_t texel = std::size_t{y} * page.side_texels + x;
+    const double codes = window.codes_per_step;
     double seen = 0.0;
     for (std::size_t i = 0; i < kIntervalsPerPair * static_cast<std::size_t>(page.pairs); ++i) {
         const std::size_t at = value_index(page, texel, i);
-        seen += bake::seen_part(page.rises[at], page.falls[at], at_step * codes_per_step,
-                                width_steps * codes_per_step, even);
+        seen += bake::seen_part(page.rises[at], page.falls[at], window.at_step * codes,
+                                window.width_steps * codes, window.even);
     }
     return std::min(seen, 1.0);
 }
