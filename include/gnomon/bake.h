@@ -67,9 +67,10 @@ struct IntervalPage {
 
 struct BakeReport {
     std::uint64_t texels = 0, lit_texels = 0, intervals = 0;
-    int most_intervals = 0;         ///< of a texel
-    std::uint64_t closed_gaps = 0;  ///< for want of pairs
-    double closed_share = 0.0;      ///< of all texels' time, lit where it is dark
+    std::uint64_t buried_texels = 0;  ///< inside of solids: they repeat a neighbour's
+    int most_intervals = 0;           ///< of a texel
+    std::uint64_t closed_gaps = 0;    ///< for want of pairs
+    double closed_share = 0.0;        ///< of all texels' time, lit where it is dark
     std::vector<std::string> warnings;
 };
 

@@ -66,9 +66,13 @@ ordered_json json_of(const BakePath& path) {
 }
 
 ordered_json json_of(const BakeReport& report) {
-    return {{"texels", report.texels},           {"lit_texels", report.lit_texels},
-            {"intervals", report.intervals},     {"most_intervals", report.most_intervals},
-            {"closed_gaps", report.closed_gaps}, {"closed_share", report.closed_share},
+    return {{"texels", report.texels},
+            {"lit_texels", report.lit_texels},
+            {"buried_texels", report.buried_texels},
+            {"intervals", report.intervals},
+            {"most_intervals", report.most_intervals},
+            {"closed_gaps", report.closed_gaps},
+            {"closed_share", report.closed_share},
             {"warnings", report.warnings}};
 }
 
@@ -94,6 +98,7 @@ BakeReport report_of(const nlohmann::json& json) {
     return {.texels = json.at("texels"),
             .lit_texels = json.at("lit_texels"),
             .intervals = json.at("intervals"),
+            .buried_texels = json.at("buried_texels"),
             .most_intervals = json.at("most_intervals"),
             .closed_gaps = json.at("closed_gaps"),
             .closed_share = json.at("closed_share"),

@@ -1,6 +1,7 @@
 #include <gnomon/bake.h>
 
 #include "bake/baked_texels.h"
+#include "bake/buried.h"
 #include "bake/day_masks.h"
 #include "bake/interval_codes.h"
 #include "bake/texel_receivers.h"
@@ -36,6 +37,7 @@ void check(const BakePath& path, const BakeOptions& options) {
 /// When each texel sees the light, one after the other.
 struct TexelIntervals {
     std::vector<std::vector<bake::CodedInterval>> texels;
+    std::vector<bool> buried;  ///< of each texel: it is inside of a solid
     BakeReport report;
 };
 
@@ -63,6 +65,23 @@ TexelIntervals coded(const interval::DayMasks& masks, std::size_t count, int cod
     return result;
 }
 
+/// Only what never sees the light can be buried.
+void find_buried(const Scene& scene, const BakePath& path,
+                 std::span<const trace::Receiver> receivers, TexelIntervals& intervals,
+                 Progress& progress) {
+    std::vector<std::uint32_t> dark;
+    for (std::uint32_t i = 0; i < intervals.texels.size(); ++i) {
+        if (intervals.texels[i].empty()) dark.push_back(i);
+    }
+    const std::vector<bool> found =
+        bake::are_buried(scene, receivers, dark, path.to_light_ws, progress);
+    intervals.buried.assign(intervals.texels.size(), false);
+    for (std::size_t i = 0; i < dark.size(); ++i) {
+        intervals.buried[dark[i]] = found[i];
+        intervals.report.buried_texels += found[i] ? 1 : 0;
+    }
+}
+
 IntervalPage blank_page(unsigned side, int pairs) {
     IntervalPage page{.side_texels = side, .pairs = pairs, .rises = {}, .falls = {}};
     const std::size_t values = std::size_t{side} * side * kIntervalsPerPair * pairs;
@@ -81,6 +100,30 @@ void put(IntervalPage& page, std::size_t texel, const std::vector<bake::CodedInt
     for (std::size_t i = 0; i < intervals.size(); ++i) {
         page.rises[value_index(page, texel, i)] = intervals[i].rise;
         page.falls[value_index(page, texel, i)] = intervals[i].fall;
+    }
+}
+
+/// Gives places of buried texels the first neighbour that is not.
+void move_out_buried(std::vector<std::uint32_t>& owner, unsigned side,
+                     const std::vector<bool>& buried) {
+    const std::vector<std::uint32_t> before = owner;
+    const auto is_open = [&](std::uint32_t texel) {
+        return texel != lightmap::kNoTexel && !buried[texel];
+    };
+    const auto last = static_cast<int>(side) - 1;
+    for (std::size_t place = 0; place < owner.size(); ++place) {
+        if (before[place] == lightmap::kNoTexel || is_open(before[place])) continue;
+        const auto x = static_cast<int>(place % side);
+        const auto y = static_cast<int>(place / side);
+        for (int i = 0; i < 9; ++i) {
+            const int u = std::clamp(x + i % 3 - 1, 0, last);
+            const int v = std::clamp(y + i / 3 - 1, 0, last);
+            const std::uint32_t other =
+                before[static_cast<std::size_t>(v) * side + static_cast<std::size_t>(u)];
+            if (!is_open(other)) continue;
+            owner[place] = other;
+            break;
+        }
     }
 }
 
@@ -103,6 +146,7 @@ std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const lightmap:
         owner[page][std::size_t{texel.y} * pages[page].side_texels + texel.x] = i;
     }
     for (std::uint32_t p = 0; p < pages.size(); ++p) {
+        move_out_buried(owner[p], pages[p].side_texels, intervals.buried);
         const std::vector<std::uint32_t> sources =
             lightmap::dilation_sources(atlas, texels, p, atlas.options.padding_texels);
         lightmap::dilate(std::span(owner[p]), sources);
@@ -160,6 +204,7 @@ BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOpt
     TexelIntervals intervals =
         coded(masks, receivers.size(), codes_per_step(options.bits),
               kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs));
+    find_buried(scene, path, receivers, intervals, progress);
     baked.pages = pages_of(baked.atlas, texels, intervals);
     baked.report = std::move(intervals.report);
     baked.report.warnings = baked.atlas.warnings;

@@ -118,7 +118,7 @@ CasterMesh caster_mesh(const Mesh& mesh, std::uint32_t cluster_triangles, Simpli
         meshopt_generateShadowIndexBuffer(indices_of(all), indices_of(std::span(mesh.triangles)),
                                           3 * std::size_t{count}, mesh.positions.data(),
                                           mesh.positions.size(), sizeof(Vec3), sizeof(Vec3));
-        result.winding = winding_of(mesh.positions, all);
+        result.winding = scene::winding_of(mesh.positions, all);
     }
     if (count > cluster_triangles) {
         const std::vector<UVec3> unsorted = result.triangles;

@@ -2,7 +2,7 @@
 
 #include <gnomon/scene.h>
 
-#include "raster/winding.h"
+#include "scene/winding.h"
 
 #include <cstdint>
 #include <vector>
@@ -27,7 +27,8 @@ struct MeshCluster {
 struct CasterMesh {
     std::vector<UVec3> triangles;
     std::vector<MeshCluster> clusters;
-    Winding winding = Winding::open;  ///< of all of it; open when it was not asked to simplify
+    scene::Winding winding =
+        scene::Winding::open;  ///< of all of it; open when it was not asked to simplify
 };
 
 enum class Simplify { no, yes };

@@ -166,7 +166,7 @@ void GpuScene::place_instances(const gpu::Device& device) {
                               .double_sided = material.double_sided,
                               .mirrored = mirrors(instance),
                               .winding = mirrors(instance)
-                                             ? mirrored(casters_[instance.mesh].winding)
+                                             ? scene::mirrored(casters_[instance.mesh].winding)
                                              : casters_[instance.mesh].winding});
         }
         ++draws_.back().slot_count;

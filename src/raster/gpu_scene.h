@@ -29,7 +29,7 @@ struct Draw {
     bool masked = false;
     bool double_sided = true;
     bool mirrored = false;
-    Winding winding = Winding::open;  ///< in the world; of what has holes: open
+    scene::Winding winding = scene::Winding::open;  ///< in the world; of what has holes: open
 };
 
 /// A scene in device memory, drawn in few calls: positions apart from the other attributes,

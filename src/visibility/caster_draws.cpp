@@ -44,15 +44,15 @@ const raster::CasterLevel& level_for(const MapLayer& layer,
 
 /// From a light outside of what closes, only faces towards it are nearest. A light at infinity is
 /// outside of everything, and its map's near plane clamps what it would cut open.
-Culled culled_by(const MapLayer& layer, raster::Winding winding) {
-    if (layer.faces == CasterFaces::all || winding == raster::Winding::open || !layer.fit.affine ||
+Culled culled_by(const MapLayer& layer, scene::Winding winding) {
+    if (layer.faces == CasterFaces::all || winding == scene::Winding::open || !layer.fit.affine ||
         !layer.fit.clamps_near) {
         return Culled::none;
     }
     // Depth grows towards the light and y of the image points down, so that what keeps the world's
     // hand turns the order of the corners.
     const bool keeps_hand = glm::determinant(glm::dmat3(layer.fit.clip_from_world)) > 0.0;
-    const bool outward = winding == raster::Winding::outward;
+    const bool outward = winding == scene::Winding::outward;
     const bool counter_clockwise = (keeps_hand == outward) == (layer.faces == CasterFaces::lit);
     return counter_clockwise ? Culled::counter_clockwise : Culled::clockwise;
 }

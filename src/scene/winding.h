@@ -4,7 +4,7 @@
 
 #include <span>
 
-namespace gnomon::raster {
+namespace gnomon::scene {
 
 /// Which side of a surface's triangles, seen counter-clockwise, is its outside.
 enum class Winding {
@@ -23,4 +23,4 @@ constexpr Winding mirrored(Winding winding) {
     return winding == Winding::outward ? Winding::inward : Winding::outward;
 }
 
-}  // namespace gnomon::raster
+}  // namespace gnomon::scene

@@ -1,10 +1,10 @@
-#include "raster/winding.h"
+#include "scene/winding.h"
 
 #include <gtest/gtest.h>
 
 #include <utility>
 
-namespace gnomon::raster {
+namespace gnomon::scene {
 namespace {
 
 // A tetrahedron; from outside its triangles are counter-clockwise.
@@ -70,4 +70,4 @@ TEST(Winding, IgnoresTrianglesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace gnomon::raster
+}  // namespace gnomon::scene

@@ -1,4 +1,4 @@
-#include "raster/winding.h"
+#include "scene/winding.h"
 
 #include <glm/geometric.hpp>
 
@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace gnomon::raster {
+namespace gnomon::scene {
 
 namespace {
 
@@ -73,4 +73,4 @@ Winding winding_of(std::span<const Vec3> positions, std::span<const UVec3> trian
     return negative == all ? Winding::inward : Winding::open;
 }
 
-}  // namespace gnomon::raster
+}  // namespace gnomon::scene
