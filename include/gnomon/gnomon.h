@@ -14,5 +14,6 @@
 #include <gnomon/report.h>
 #include <gnomon/scene.h>
 #include <gnomon/sun.h>
+#include <gnomon/sun_hours.h>
 #include <gnomon/technique.h>
 #include <gnomon/visibility.h>
