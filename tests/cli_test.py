@@ -2,6 +2,7 @@
 """The program `gnomon` as its users meet it: help, typing errors, exit codes, and files that appear whole
 or not at all. GNOMON_CLI is the path of the program."""
 
+import csv
 import json
 import os
 import pathlib
@@ -14,7 +15,7 @@ import unittest
 
 CLI = os.environ.get("GNOMON_CLI", "")
 DONE, MACHINE, INPUT, INTERRUPTED = 0, 1, 2, 130
-COMMANDS = ("info", "scene", "render", "compare", "bench")
+COMMANDS = ("info", "scene", "render", "compare", "bench", "sun")
 # Generous: lavapipe on a busy machine, perhaps under a sanitizer.
 TIMEOUT_S = 240
 SMALL = ("--size", "64x36")
@@ -324,15 +325,128 @@ class Work(CliTest):
         self.assertEqual(self.files(), [])
 
 
+class Sun(CliTest):
+    DAY = ("--place", "48.137,11.575", "--date", "2026-03-20")
+    QUICK = ("--minutes", 30, *SMALL)
+
+    def sun(self, *flags):
+        return self.assert_works("sun", "cube", "-o", self.folder / "hours", *self.QUICK, *flags)
+
+    def rows(self, name="hours.csv"):
+        with open(self.folder / "hours" / name, encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def fails(self, words, *flags):
+        self.assert_fails(INPUT, words, "sun", "cube", "-o", self.folder / "hours", *flags)
+        self.assertNotIn("hours", self.files())
+
+    def test_surfaces(self):
+        told = self.sun(*self.DAY, "--texel", 0.25, "--at-least", "2h", "--at-least", 6)
+        self.assertEqual(self.files(), ["hours", "hours/hours.csv", "hours/hours.exr",
+                                        "hours/top.png", "hours/view.png"])
+        for word in ("sunrise 2026-03-20", "each change", ">=2 h", ">=6 h", "\nall ", "\nup "):
+            self.assertIn(word, told)
+        self.assertEqual(told.splitlines()[-1], str(self.folder / "hours" / "view.png"))
+        rows = self.rows()
+        self.assertEqual(list(rows[0]), "x,y,z,nx,ny,nz,area_m2,hours,longest".split(","))
+        self.assertTrue(all(0 <= float(row["longest"]) <= float(row["hours"]) <= 12.2 for row in rows))
+
+    def test_texel_size_is_told_when_it_is_chosen(self):
+        self.assertRegex(self.sun(*self.DAY), r"--texel 0\.\d+ was chosen")
+
+    def test_fronts_are_a_part_of_both_sides(self):
+        def area(*flags):
+            self.sun(*self.DAY, "--texel", 0.5, *flags)
+            return sum(float(row["area_m2"]) for row in self.rows())
+        self.assertLess(area("--fronts"), area())
+
+    def test_sensors(self):
+        points = self.folder / "points.csv"
+        points.write_text("x,y,z,nx,ny,nz\n100,0,100,0,1,0\n100,0,100,0,-1,0\n100,0,100\n", encoding="utf-8")
+        self.sun(*self.DAY, "--sensors", points)
+        hours = [float(row["hours"]) for row in self.rows()]
+        self.assertEqual(hours[0], hours[2])
+        self.assertAlmostEqual(hours[0], 12.0, delta=0.1)  # an equinox, far from the cube
+        self.assertEqual(hours[1], 0.0)
+
+    def test_sensors_in_the_coordinates_of_a_file_with_z_up(self):
+        wall = self.folder / "wall.obj"  # along the meridian, west of the point, with +Y north
+        wall.write_text("v 0 -1000 0\nv 0 1000 0\nv 0 1000 1000\nv 0 -1000 1000\nf 1 2 3 4\n", encoding="utf-8")
+        points = self.folder / "points.csv"
+        points.write_text("1,0,0\n-1,0,0\n0.5,0,2000\n", encoding="utf-8")
+        self.assert_works("sun", wall, "--up", "z", "-o", self.folder / "hours", *self.DAY, "--minutes", 2,
+                          "--sensors", points, *SMALL)
+        rows = self.rows()
+        self.assertEqual([(row["x"], row["z"]) for row in rows],
+                         [("1.0000", "0.0000"), ("-1.0000", "0.0000"), ("0.5000", "2000.0000")])
+        self.assertEqual([row["nz"] for row in rows], ["1"] * 3)
+        morning, evening, whole = (float(row["hours"]) for row in rows)
+        self.assertAlmostEqual(morning, whole / 2, delta=0.05)  # noon is not quite the middle
+        self.assertAlmostEqual(evening, whole / 2, delta=0.05)
+
+    def test_grid_and_surfaces_together(self):
+        told = self.sun(*self.DAY, "--grid", "1,0.5", "--texel", 0.5)
+        self.assertIn("the grid's height is 0.5 m", told)
+        self.assertIn("hours/grid_hours.csv", self.files())
+        self.assertIn("hours/texels_hours.exr", self.files())
+
+    def test_period(self):
+        told = self.sun("--place", "48.137,11.575", "--from", "2026-03-01", "--to", "2026-03-31", "--step", 10,
+                        "--texel", 0.5, "--at-least", 4)
+        self.assertIn("4 of 31 days", told)
+        self.assertIn("every day", told)
+        for row in self.rows():
+            self.assertLessEqual(float(row["hours_worst_day"]), float(row["hours_per_day"]) + 0.001)
+
+    def test_year(self):
+        told = self.assert_works("sun", "cube", "-o", self.folder / "hours", "--place", "48.137,11.575", "--year",
+                                 2026, "--grid", 1, *SMALL)
+        self.assertIn("all 365 days", told)
+
+    def test_polar_night_is_an_answer(self):
+        told = self.sun("--place", "69.65,18.96", "--date", "2026-12-21", "--texel", 0.5)
+        self.assertIn("polar night", told)
+
+    def test_what_is_missing_or_wrong(self):
+        place, date = self.DAY[:2], self.DAY[2:]
+        self.fails(["--place is missing"], *date)
+        self.fails(["--date", "--from", "--year"], *place)
+        self.fails(["--date", "--from", "--year"], *self.DAY, "--year", 2026)
+        self.fails(["--date", "--from", "--year"], *place, "--from", "2026-01-01")
+        self.fails(["--to", "before"], *place, "--from", "2026-02-01", "--to", "2026-01-01")
+        self.fails(["--step"], *self.DAY, "--step", 3)
+        self.fails(["--date", "2026-02-30", "does not exist"], *place, "--date", "2026-02-30")
+        self.fails(["--place", "91"], "--place", "91,0", *date)
+        self.fails(["--minutes", "1", "2 to 60"], *self.DAY, "--minutes", 1)
+        self.fails(["--at-least", "25", "0 to 24"], *self.DAY, "--at-least", "25h")
+        self.fails(["--grid", "1,2,3"], *self.DAY, "--grid", "1,2,3")
+        self.fails(["grid", "1e-06"], *self.DAY, "--grid", "1e-6")
+        self.fails(["nowhere.csv"], *self.DAY, "--sensors", self.folder / "nowhere.csv")
+        points = self.folder / "points.csv"
+        points.write_text("1,2,3\n1,2\n", encoding="utf-8")
+        self.fails(["points.csv, line 2"], *self.DAY, "--sensors", points)
+        self.assert_fails(INPUT, ["-o"], "sun", "cube", *self.DAY)
+        self.assert_fails(INPUT, ["-o", "does not exist"], "sun", "cube", *self.DAY, "-o",
+                          self.folder / "no" / "hours")
+
+    def test_folder_keeps_what_else_it_holds(self):
+        (self.folder / "hours").mkdir()
+        (self.folder / "hours" / "plan.txt").write_text("mine", encoding="utf-8")
+        self.sun(*self.DAY, "--texel", 0.5)
+        self.assertEqual((self.folder / "hours" / "plan.txt").read_text(encoding="utf-8"), "mine")
+
+
 class Interrupt(CliTest):
-    def interrupt(self, number):
-        """Sends the signal to a long `compare` once it tells its progress; its exit code and stderr."""
+    COMPARE = ("compare", "courtyard", "--size", "1920x1080", "--reference-samples", "65536")
+    SUN = ("sun", "courtyard", "--place", "48.137,11.575", "--year", "2026", "--minutes", "2", "--texel", "0.01")
+
+    def interrupt(self, number, arguments=COMPARE):
+        """Sends the signal to a long command once it tells its progress; its exit code and stderr."""
         def as_from_a_terminal():
             # A shell's background jobs, and so perhaps we, ignore Ctrl-C; the program would too.
             signal.signal(number, signal.SIG_DFL)
 
-        command = [CLI, "compare", "courtyard", "-o", str(self.folder / "report"), "--size",
-                   "1920x1080", "--reference-samples", "65536"]
+        command = [CLI, *arguments, "-o", str(self.folder / "report")]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               preexec_fn=as_from_a_terminal) as process:
             try:
@@ -351,6 +465,11 @@ class Interrupt(CliTest):
         code, stderr = self.interrupt(signal.SIGINT)
         self.assertEqual(code, INTERRUPTED, stderr)
         self.assertRegex(stderr.splitlines()[-1], "^error: cancelled")
+        self.assertEqual(self.files(), [])
+
+    def test_ctrl_c_leaves_no_hours(self):
+        code, stderr = self.interrupt(signal.SIGINT, self.SUN)
+        self.assertEqual(code, INTERRUPTED, stderr)
         self.assertEqual(self.files(), [])
 
     def test_termination_leaves_nothing(self):

@@ -43,5 +43,6 @@ Command add_render(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_bake(CLI::App& program);
+Command add_sun(CLI::App& program);
 
 }  // namespace gnomon::cli

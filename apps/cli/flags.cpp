@@ -14,18 +14,12 @@ namespace gnomon::cli {
 
 namespace {
 
+constexpr const char* kViewGroup = "View";
 constexpr Range kThreads{0, 1024, ""};
 constexpr Range kAnimationTime{0.0, 1e6, "seconds"};
 constexpr Range kAnimation{0, 1e6, ""};
 constexpr Range kExposure{1e-6, 1e6, ""};
 constexpr Range kAmbient{0.0, 1e9, ""};
-
-/// A flag whose text is parsed while the command line is.
-CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
-                        const std::string& meaning,
-                        const std::function<void(const std::string&)>& parse) {
-    return app.add_option_function<std::string>(name, parse, meaning)->type_name(type);
-}
 
 std::string long_name(const std::string& names) {
     return names.substr(names.find("--"));
@@ -124,6 +118,12 @@ void add_globals(CLI::App& app, Globals& globals, const std::string& group) {
     app.add_flag("--quiet", globals.quiet, "no progress on standard error")->group(group);
 }
 
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
+                        const std::string& meaning,
+                        const std::function<void(const std::string&)>& parse) {
+    return app.add_option_function<std::string>(name, parse, meaning)->type_name(type);
+}
+
 CLI::Option* add_integer(CLI::App& app, const std::string& name, int& target, Range range,
                          const std::string& meaning) {
     return add_parsed(app, name, "N", meaning, [&target, name, range](const std::string& text) {
@@ -138,13 +138,12 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, double& target, 
     });
 }
 
-void add_view(CLI::App& app, ViewFlags& flags) {
-    const std::string group = "View";
+void add_camera(CLI::App& app, ViewFlags& flags) {
     app.add_option("SCENE", flags.scene,
                    "a .glb, .gltf or .obj file, or a built-in scene (gnomon scene --list)");
     add_parsed(app, "--size", "WxH", "pixels (default 1280x720)",
                [&flags](const std::string& text) { flags.size = parse_size("--size", text); })
-        ->group(group);
+        ->group(kViewGroup);
     add_parsed(app, "--camera", "CAMERA",
                "eye=x,y,z,target=x,y,z[,fov=degrees][,near=metres], in the file's coordinates; or "
                "the index or name of a camera of the scene (default: its first)",
@@ -152,7 +151,17 @@ void add_view(CLI::App& app, ViewFlags& flags) {
                    if (is_camera_pose(text)) parse_camera(text);  // wrong ones fail before loading
                    flags.camera = text;
                })
-        ->group(group);
+        ->group(kViewGroup);
+}
+
+void add_ignore_alpha(CLI::App& app, ViewFlags& flags) {
+    app.add_flag("--ignore-alpha", flags.ignore_alpha,
+                 "alpha masks count as solid, for the eye and for light")
+        ->group(kViewGroup);
+}
+
+void add_view(CLI::App& app, ViewFlags& flags) {
+    add_camera(app, flags);
     app.add_option_function<std::vector<std::string>>(
            "--light",
            [&flags](const std::vector<std::string>& texts) {
@@ -165,14 +174,12 @@ void add_view(CLI::App& app, ViewFlags& flags) {
            "Kinds: sun, point, spot, sphere, disc, rect")
         ->type_name("LIGHT")
         ->allow_extra_args(false)
-        ->group(group);
+        ->group(kViewGroup);
     app.add_option("--lights", flags.chosen_lights,
                    "which of the scene's own lights, by name or index: 0,2 (default all)")
         ->type_name("A,B|all")
-        ->group(group);
-    app.add_flag("--ignore-alpha", flags.ignore_alpha,
-                 "alpha masks count as solid, for the eye and for light")
-        ->group(group);
+        ->group(kViewGroup);
+    add_ignore_alpha(app, flags);
 }
 
 void add_lighting(CLI::App& app, LightingOptions& options) {

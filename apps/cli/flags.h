@@ -17,6 +17,11 @@ namespace gnomon::cli {
 /// `group`: their heading in the help; empty = they are taken but not shown.
 void add_globals(CLI::App& app, Globals& globals, const std::string& group);
 
+/// A flag whose text is parsed while the command line is.
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
+                        const std::string& meaning,
+                        const std::function<void(const std::string&)>& parse);
+
 /// A flag whose value is a whole number (or a number) in `range`.
 CLI::Option* add_integer(CLI::App& app, const std::string& name, int& target, Range range,
                          const std::string& meaning);
@@ -33,6 +38,9 @@ struct ViewFlags {
     bool ignore_alpha = false;
 };
 void add_view(CLI::App& app, ViewFlags& flags);
+/// SCENE, --size and --camera alone, of add_view.
+void add_camera(CLI::App& app, ViewFlags& flags);
+void add_ignore_alpha(CLI::App& app, ViewFlags& flags);
 
 void add_lighting(CLI::App& app, LightingOptions& options);
 

@@ -83,6 +83,25 @@ void require_output_folder(std::string_view flag, const fs::path& path) {
     require_folder_of(flag, folder);
 }
 
+void require_shared_folder(std::string_view flag, const fs::path& path) {
+    const fs::path folder = path.has_filename() ? path : path.parent_path();
+    std::error_code error;
+    if (!fs::exists(folder, error)) {
+        require_folder_of(flag, folder);
+    } else {
+        require_folder_of(flag, folder / "file");
+    }
+}
+
+void make_folder(const fs::path& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error) {
+        throw Error(ErrorKind::machine,
+                    fmt::format("{}: cannot be made: {}", path.string(), error.message()));
+    }
+}
+
 void write_text(const fs::path& path, std::string_view text) {
     // Beside the target, so that the rename stays within one file system.
     fs::path temporary = path;

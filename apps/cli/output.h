@@ -29,6 +29,12 @@ void require_output_file(std::string_view flag, const std::filesystem::path& pat
 /// Likewise for a folder that will be made, or holds a report of ours that will be replaced.
 void require_output_folder(std::string_view flag, const std::filesystem::path& path);
 
+/// Likewise for a folder that will be made if it is missing, and keeps what else it holds.
+void require_shared_folder(std::string_view flag, const std::filesystem::path& path);
+
+/// Makes the folder if it is missing. Throws Error{machine}.
+void make_folder(const std::filesystem::path& path);
+
 /// Writes a text file whole or not at all. Throws Error{machine}.
 void write_text(const std::filesystem::path& path, std::string_view text);
 

@@ -1,0 +1,66 @@
+#include "sun_files.h"
+
+#include <gnomon/error.h>
+
+#include "output.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace gnomon::cli {
+
+std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) {
+    const bool texels = result.kind == SunPoints::texels;
+    const bool period = result.days.sampled > 1;
+    std::string text = fmt::format("x,y,z,nx,ny,nz,{},{}\n", texels ? "area_m2" : "weight",
+                                   period ? "hours_per_day,hours_in_period,hours_worst_day,"
+                                            "longest_per_day,longest_worst_day"
+                                          : "hours,longest");
+    const FileFrame turn{.z_up = frame.z_up};
+    const auto out = std::back_inserter(text);
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        const SunSensor& point = result.points[i];
+        const DVec3 p = frame.file_point_m(Vec3(point.position_ws));
+        const DVec3 n = turn.file_point_m(Vec3(normalize(Vec3(point.normal_ws))));
+        const SunHours& hours = result.hours[i];
+        fmt::format_to(out, "{:.4f},{:.4f},{:.4f},{:.5g},{:.5g},{:.5g},{:.6g},", p.x, p.y, p.z, n.x,
+                       n.y, n.z, result.weights[i]);
+        if (period) {
+            fmt::format_to(out, "{:.3f},{:.2f},{:.3f},{:.3f},{:.3f}\n", hours.mean_h,
+                           hours.mean_h * static_cast<float>(result.days.period), hours.worst_h,
+                           hours.longest_mean_h, hours.longest_worst_h);
+        } else {
+            fmt::format_to(out, "{:.3f},{:.3f}\n", hours.mean_h, hours.longest_mean_h);
+        }
+    }
+    return text;
+}
+
+std::vector<std::filesystem::path> write_sun_hours(const std::filesystem::path& folder,
+                                                   const std::string& prefix, const Scene& scene,
+                                                   const SunHoursResult& result,
+                                                   const FileFrame& frame, const Camera& camera,
+                                                   Extent size, Progress& progress) {
+    const Image top = sun_hours_picture(scene, result, top_camera(scene, size), size, progress);
+    const Image view = sun_hours_picture(scene, result, camera, size, progress);
+    const std::vector<Image> pages = sun_hours_pages(result);
+    const std::string csv = sun_hours_csv(result, frame);
+    if (progress.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
+
+    make_folder(folder);
+    std::vector<std::filesystem::path> paths;
+    const auto path = [&](const std::string& name) {
+        return paths.emplace_back(folder / (prefix + name));
+    };
+    write_text(path("hours.csv"), csv);
+    for (std::size_t page = 0; page < pages.size(); ++page) {
+        const std::string number = pages.size() > 1 ? fmt::format(".{}", page) : std::string();
+        write_exr(path(fmt::format("hours{}.exr", number)), pages[page]);
+    }
+    write_png(path("top.png"), top);
+    write_png(path("view.png"), view);
+    return paths;
+}
+
+}  // namespace gnomon::cli
