@@ -97,6 +97,10 @@ REPORT_SIZE, REPORT_CROP = "800x450", (320, 6, 600, 344)
 REPORT_PANELS = ("truth-picture", "shadow_map-picture", "shadow_volumes-picture",
                  "shadow_map-difference", "shadow_volumes-difference")
 
+# Hours of sun, as docs/sun_hours.md tells them.
+SUN_HOURS = ("--place", "48.137,11.575", "--date", "2026-03-20", "--at-least", "4", "--texel", "0.04",
+             "--size", "800x520")
+
 
 def gnomon(*words):
     subprocess.run([CLI, *words, "--quiet"], check=True, stdout=subprocess.DEVNULL)
@@ -123,7 +127,7 @@ def main():
     (ROOT / "docs" / "images").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         frame = f"{folder}/frame.png"
-        wanted = sys.argv[2:] or [*PICTURES, "compare"]
+        wanted = sys.argv[2:] or [*PICTURES, "sun_hours", "compare"]
         for name, (size, crop, columns, commands) in PICTURES.items():
             if name not in wanted:
                 continue
@@ -133,6 +137,10 @@ def main():
                 gnomon("render", *command.split(), *truth, "-o", frame, "--size", size)
                 panels.append(cropped(frame, crop))
             save(name, panels, columns)
+        if "sun_hours" in wanted:
+            gnomon("sun", "courtyard", "-o", f"{folder}/hours", *SUN_HOURS)
+            with Image.open(f"{folder}/hours/view.png") as image:
+                save("sun_hours", [image.convert("RGB")], 1)
         if "compare" not in wanted:
             return
         gnomon("compare", "courtyard", "-o", f"{folder}/report", "--size", REPORT_SIZE,
