@@ -209,7 +209,7 @@ void bench_scene(const std::string& name, const Options& options) {
     const bake_scenes::Plan plan = plan_of(name, options);
     const Scene scene = plan.scene();
     Progress progress;
-    const auto config = fmt::format("threads=1,isa={}", options.text("isa"));
+    const auto config = fmt::format("isa={}", options.text("isa"));
     const auto start = Clock::now();
     const auto since = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     interval::Tree tree(

@@ -41,10 +41,6 @@ private:
     double part_, parts_;
 };
 
-/// Each point by itself: neighbours of a list need not be neighbours in the scene, and two points
-/// that face one way from two planes must not share a tile.
-constexpr int kPointsPerTile = 1;
-
 std::vector<SunHours> count(const Scene& scene, std::span<const Receiver> receivers,
                             const SunCalendar& calendar, bool ignore_alpha, Progress& progress) {
     const interval::Frame frame = interval::frame_around(calendar.pole_ws);
@@ -63,7 +59,7 @@ std::vector<SunHours> count(const Scene& scene, std::span<const Receiver> receiv
             interval::DayMasks masks;
             if (!group.to_sun_ws.empty()) {
                 masks = interval::bake(tree, interval::DayPath(group.to_sun_ws, frame), here, part,
-                                       kPointsPerTile);
+                                       interval::kChooseTile);
             }
             parallel_for(here.size(), kReceiversPerTask, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <limits>
 
 namespace gnomon::interval {
 
@@ -17,15 +18,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using trace::Receiver;
 
-/// Receivers that one task does: some milliseconds of work.
-constexpr std::size_t kReceiversPerTask = 1 << 12;
-
-constexpr std::array<int, 4> kTileSizes = {1, 16, 32, 64};
-/// A trial of another size: its receivers, two tiles of the largest, or fewer singly, which are by
-/// far the slowest where neighbours share anything.
-constexpr std::array<std::size_t, 4> kTrials = {16, 64, 64, 128};
-/// Receivers between two trials: at first, and after trials in vain.
-constexpr std::size_t kLeastPause = 256, kGreatestPause = 1 << 14;
+constexpr std::array<int, 3> kTileSizes = {1, 16, 64};
+/// Receivers of a trial of each size: few singly, which are by far the slowest where neighbours
+/// share anything. Each size starts at a multiple of itself, where squares of a Z-order curve do.
+constexpr std::array<std::size_t, 3> kTrials = {16, 48, 64};
+/// Receivers that one task does, and for which a size is chosen: charts differ. Some milliseconds
+/// of work, of which trials are a sixteenth.
+constexpr std::size_t kBlock = 2048;
+/// Where neighbours are far apart, tiles take many times as long as single receivers, the larger
+/// the longer: after one that took so much longer than the best none is tried.
+constexpr double kHopeless = 2.0;
 
 /// Part of a list of receivers with its masks.
 struct Part {
@@ -42,42 +44,22 @@ struct Part {
     }
 };
 
-/// A thread's tracer, and the size of tiles that has been fastest of late. Next sizes are tried
-/// now and then, the seldomer the longer nothing changes.
-class AdaptiveTracer {
-public:
-    AdaptiveTracer(const Tree& tree, const DayPath& path) : tracer_(tree, path) {}
-
-    void trace(const Part& part, int texels_per_tile) {
-        tracer_.trace(part.receivers, texels_per_tile, part.masks);
-    }
-    void trace(Part part) {
-        while (!part.receivers.empty()) {
-            const Part usual = part.next(pause_);
-            const double usual_s = seconds_per_receiver(usual, size_);
-            up_ = size_ == 0 || (size_ + 1 < kTileSizes.size() && !up_);
-            const std::size_t other = up_ ? size_ + 1 : size_ - 1;
-            const Part trial = part.next(kTrials[other]);
-            if (trial.receivers.empty()) break;
-            const bool better = seconds_per_receiver(trial, other) < usual_s;
-            if (better) size_ = other;
-            pause_ = better ? kLeastPause : std::min(2 * pause_, kGreatestPause);
-        }
-    }
-
-private:
-    double seconds_per_receiver(const Part& part, std::size_t size) {
+/// Does a part with the size of tiles that was fastest at its start.
+void trace_timed(TileTracer& tracer, Part part) {
+    double best_s = std::numeric_limits<double>::infinity();
+    int best_size = kTileSizes[0];
+    for (std::size_t i = 0; i < kTileSizes.size() && !part.receivers.empty(); ++i) {
+        const Part trial = part.next(kTrials[i]);
         const auto start = Clock::now();
-        trace(part, kTileSizes[size]);
-        return std::chrono::duration<double>(Clock::now() - start).count() /
-               static_cast<double>(part.receivers.size());
+        tracer.trace(trial.receivers, kTileSizes[i], trial.masks);
+        const double s = std::chrono::duration<double>(Clock::now() - start).count() /
+                         static_cast<double>(trial.receivers.size());
+        if (s > kHopeless * best_s) break;
+        if (s < best_s) best_size = kTileSizes[i];
+        best_s = std::min(best_s, s);
     }
-
-    TileTracer tracer_;
-    std::size_t size_ = 1;  ///< index into kTileSizes
-    std::size_t pause_ = kLeastPause;
-    bool up_ = false;  ///< the last trial was of a larger size
-};
+    tracer.trace(part.receivers, best_size, part.masks);
+}
 
 }  // namespace
 
@@ -91,21 +73,22 @@ DayMasks bake(const Tree& tree, const DayPath& path, std::span<const Receiver> r
     masks.steps = path.steps();
     const std::size_t words = masks.words_per_mask();
     masks.words.resize(receivers.size() * words);
-    tbb::enumerable_thread_specific<AdaptiveTracer> tracers(
-        [&] { return AdaptiveTracer(tree, path); });
-    parallel_for(
-        receivers.size(), kReceiversPerTask,
-        [&](std::size_t first, std::size_t last) {
-            const Part part{receivers.subspan(first, last - first),
-                            std::span(masks.words).subspan(first * words, (last - first) * words),
-                            words};
-            if (texels_per_tile == kChooseTile) {
-                tracers.local().trace(part);
-            } else {
-                tracers.local().trace(part, texels_per_tile);
-            }
-        },
-        "baking the sun", &progress);
+    tbb::enumerable_thread_specific<TileTracer> tracers([&] { return TileTracer(tree, path); });
+    parallel_for((receivers.size() + kBlock - 1) / kBlock, 1,
+                 [&](std::size_t block, std::size_t) {
+                     const std::size_t first = block * kBlock;
+                     const std::size_t last = std::min(first + kBlock, receivers.size());
+                     const Part part{
+                         receivers.subspan(first, last - first),
+                         std::span(masks.words).subspan(first * words, (last - first) * words),
+                         words};
+                     if (texels_per_tile == kChooseTile) {
+                         trace_timed(tracers.local(), part);
+                     } else {
+                         tracers.local().trace(part.receivers, texels_per_tile, part.masks);
+                     }
+                 },
+                 "baking the sun", &progress);
     return masks;
 }
 

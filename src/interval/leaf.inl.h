@@ -232,18 +232,31 @@ HWY_INLINE Lanes seen_at(Vf first, Vf last, int step) {
     return hn::And(hn::Le(first, at), hn::Ge(last, at));
 }
 
+/// Writes the values of some lanes side by side. Where no instruction does that, lane by lane: they
+/// are few, and Highway 1.0's tables of permutations are copied for each call by GCC.
+template <typename D, typename V, typename T>
+HWY_INLINE void store_some(D d, V values, Lanes lanes, T* to) {
+    if constexpr (kLanes == kWidth) {
+        hn::CompressStore(values, hn::RebindMask(d, lanes), d, to);
+    } else {
+        alignas(64) T all[kLanes];
+        hn::Store(values, d, all);
+        for (std::uint32_t bits = bits_of(lanes); bits != 0; bits &= bits - 1)
+            *to++ = all[std::countr_zero(bits)];
+    }
+}
+
 HWY_INLINE void append_indices(Pairs& pairs, Lanes lanes, int step, const LeafVisit& visit) {
     const Ints ints;
     hn::StoreU(hn::Set(ints, step), ints, pairs.step + pairs.count);
     hn::StoreU(hn::Set(ints, visit.id), ints, pairs.leaf + pairs.count);
-    hn::CompressStore(hn::Iota(ints, visit.first_lane), hn::RebindMask(ints, lanes), ints,
-                      pairs.lane + pairs.count);
+    store_some(ints, hn::Iota(ints, visit.first_lane), lanes, pairs.lane + pairs.count);
 }
 
 template <bool kSingle>
 HWY_INLINE void append_edges(Pairs& pairs, Lanes lanes, const Terms<kSingle>& terms, Vf error) {
     const auto append = [&](Term term, Vf value) HWY_ATTR {
-        hn::CompressStore(value, lanes, Floats(), pairs.terms[term] + pairs.count);
+        store_some(Floats(), value, lanes, pairs.terms[term] + pairs.count);
     };
     append(kU, terms.u);
     append(kV, terms.v);
@@ -259,7 +272,7 @@ HWY_INLINE void append_edges(Pairs& pairs, Lanes lanes, const Terms<kSingle>& te
 HWY_INLINE void append_sides(Pairs& pairs, Lanes lanes, const Sides& sides, Vf signs,
                              Lanes varying) {
     const auto append = [&](SideTerm term, Vf value) HWY_ATTR {
-        hn::CompressStore(value, lanes, Floats(), pairs.terms[term] + pairs.count);
+        store_some(Floats(), value, lanes, pairs.terms[term] + pairs.count);
     };
     append(kSide, hn::Xor(sides.center, signs));
     append(kSideAlongS, hn::Xor(sides.along_s, signs));
