@@ -30,6 +30,7 @@ MODULES = {
     "trace": SCENE | {"trace"},
     "interval": SCENE | {"trace", "interval"},
     "bake": BAKE,
+    "web": BAKE | {"web"},
     "gpu": GPU,
     "raster": SCENE | GPU | {"raster"},
     "visibility": VISIBILITY,
@@ -47,6 +48,7 @@ PUBLIC = {
     "sun": "sun", "light_path": "sun",
     "context": "gpu",
     "bake": "bake", "sun_hours": "bake",
+    "web": "web",
     "visibility": "visibility",
     "technique": "technique",
     "lighting": "lighting",
@@ -60,7 +62,7 @@ RESERVED = [
     (re.compile(r"embree\d?/"), "Embree", {"trace"}),
     (re.compile(r"erfa"), "ERFA", {"sun"}),
     (re.compile(r"hwy/"), "Highway", {"interval"}),
-    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - BAKE),
+    (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - BAKE - {"web"}),
 ]
 
 # Public headers may use the standard library, glm and each other.

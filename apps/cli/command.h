@@ -44,5 +44,6 @@ Command add_compare(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_bake(CLI::App& program);
 Command add_sun(CLI::App& program);
+Command add_web(CLI::App& program);
 
 }  // namespace gnomon::cli
