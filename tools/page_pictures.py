@@ -9,9 +9,11 @@ GNOMON: the built program; else $GNOMON_CLI, else build/release/apps/cli/gnomon.
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 from PIL import Image
 
@@ -19,6 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 CLI = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else
                    os.environ.get("GNOMON_CLI") or ROOT / "build/release/apps/cli/gnomon")
 GAP_PX = 6
+WEB_PORT = 8765
+WEB_SIZE = (960, 540)
 COLOURS = 256  # of a picture's palette, so that a file stays small
 
 RECT = "--light rect:center=1.5,3,1,u=0.5,0,0,v=0,0,0.5"
@@ -123,11 +127,29 @@ def cropped(path, crop):
         return image.convert("RGB").crop(crop)
 
 
+def web_picture(folder):
+    """The page of gnomon web, as tests/web_drive.mjs photographs it; needs node, its packages and Chromium."""
+    gnomon("bake", "courtyard", "--sun", "place=48.137,11.575,date=2026-06-21", "--texel", "0.05", "-o", f"{folder}/day")
+    gnomon("web", f"{folder}/day", "--title", "Courtyard", "-o", f"{folder}/page")
+    server = subprocess.Popen([sys.executable, "-m", "http.server", str(WEB_PORT), "--directory", f"{folder}/page"],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        time.sleep(1)  # for the server to listen
+        packages = CLI.resolve().parents[2] / "web"
+        subprocess.run(["node", ROOT / "tests/web_drive.mjs", packages, shutil.which("chromium"),
+                        f"http://localhost:{WEB_PORT}/", folder, "picture"], check=True)
+    finally:
+        server.terminate()
+    with Image.open(f"{folder}/web.png") as image:
+        save("web", [image.convert("RGB").resize(WEB_SIZE, Image.LANCZOS)], 1)
+
+
 def main():
     (ROOT / "docs" / "images").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         frame = f"{folder}/frame.png"
         wanted = sys.argv[2:] or [*PICTURES, "sun_hours", "compare"]
+        wanted = sys.argv[2:] or [*PICTURES, "compare", "web"]
         for name, (size, crop, columns, commands) in PICTURES.items():
             if name not in wanted:
                 continue
@@ -141,6 +163,8 @@ def main():
             gnomon("sun", "courtyard", "-o", f"{folder}/hours", *SUN_HOURS)
             with Image.open(f"{folder}/hours/view.png") as image:
                 save("sun_hours", [image.convert("RGB")], 1)
+        if "web" in wanted:
+            web_picture(folder)
         if "compare" not in wanted:
             return
         gnomon("compare", "courtyard", "-o", f"{folder}/report", "--size", REPORT_SIZE,
