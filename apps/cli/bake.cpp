@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   gnomon bake courtyard --sun place=48.137,11.575,date=2026-06-21 --texel 0.1 -o day
-  gnomon bake city.glb --sun place=52.0,4.36,date=2026-12-21,utc=+01:00,north=-30 --bits 16 -o winter
+  gnomon bake city.glb --sun place=52,4.36,date=2026-12-21,utc=+01:00,north=-30 --bits 16 -o winter
   gnomon bake city.glb --sun place=52.0,4.36,date=2026-12-21 --texel 0.25 -o winter --resume
 
 --sun takes place=LATITUDE,LONGITUDE[,HEIGHT] and date=YEAR-MONTH-DAY, and may take utc=OFFSET (the
