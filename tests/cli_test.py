@@ -15,8 +15,7 @@ import unittest
 
 CLI = os.environ.get("GNOMON_CLI", "")
 DONE, MACHINE, INPUT, INTERRUPTED = 0, 1, 2, 130
-COMMANDS = ("info", "scene", "render", "compare", "bench", "sun")
-COMMANDS = ("info", "scene", "render", "compare", "bench", "bake", "web")
+COMMANDS = ("info", "scene", "render", "compare", "bench", "bake", "sun", "web")
 # Generous: lavapipe on a busy machine, perhaps under a sanitizer.
 TIMEOUT_S = 240
 SMALL = ("--size", "64x36")

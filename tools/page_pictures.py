@@ -148,8 +148,7 @@ def main():
     (ROOT / "docs" / "images").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         frame = f"{folder}/frame.png"
-        wanted = sys.argv[2:] or [*PICTURES, "sun_hours", "compare"]
-        wanted = sys.argv[2:] or [*PICTURES, "compare", "web"]
+        wanted = sys.argv[2:] or [*PICTURES, "sun_hours", "compare", "web"]
         for name, (size, crop, columns, commands) in PICTURES.items():
             if name not in wanted:
                 continue

@@ -94,7 +94,7 @@ void run(std::vector<std::string> args) {
     program.require_subcommand(0, 1);
     const std::vector<Command> commands = {
         add_info(program),  add_scene(program), add_render(program), add_compare(program),
-        add_bench(program), add_bake(program),  add_sun(program), add_web(program)};
+        add_bench(program), add_bake(program),  add_sun(program),    add_web(program)};
     add_globals(program, session.globals, kGlobalsGroup);
     for (const Command& command : commands) {
         command.app->allow_extras();
