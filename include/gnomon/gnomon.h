@@ -2,6 +2,7 @@
 
 /// All of gnomon but <gnomon/vulkan.h>.
 
+#include <gnomon/bake.h>
 #include <gnomon/context.h>
 #include <gnomon/error.h>
 #include <gnomon/image.h>
@@ -17,3 +18,4 @@
 #include <gnomon/sun_hours.h>
 #include <gnomon/technique.h>
 #include <gnomon/visibility.h>
+#include <gnomon/web.h>

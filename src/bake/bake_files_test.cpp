@@ -1,0 +1,166 @@
+#include <gnomon/bake.h>
+#include <gnomon/error.h>
+
+#include "base/file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Place kMunich{48.137, 11.575, 520.0};
+
+BakePath day(std::chrono::year_month_day date, int steps) {
+    SunPathOptions options;
+    options.steps = steps;
+    return bake_path(sun_path(kMunich, date, std::chrono::minutes(60), options), "48.137,11.575",
+                     "a day");
+}
+
+BakePath summer(int steps) {
+    using namespace std::chrono;
+    return day(2026y / June / 21, steps);
+}
+
+/// Asks to stop once it has been told of as much.
+class StopsAt final : public Progress {
+public:
+    explicit StopsAt(double fraction) : fraction_(fraction) {}
+    void report(std::string_view task, double fraction) override {
+        if (task == "baking the sun" && fraction >= fraction_) stopped_ = true;
+    }
+    bool cancelled() const override { return stopped_; }
+
+private:
+    double fraction_;
+    std::atomic<bool> stopped_{false};
+};
+
+class BakeFiles : public testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::temp_directory_path() /
+                  (std::string("gnomon_bake_") + test->name() + std::to_string(::getpid()));
+        fs::remove_all(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    static IntervalBake cube(BakeBits bits) {
+        Progress silent;
+        return bake_intervals(make_builtin_scene("cube"), summer(100),
+                              {.texel_size_m = 0.1, .bits = bits, .resume_file = {}}, silent);
+    }
+
+    fs::path folder_;
+};
+
+void expect_equal(const IntervalBake& a, const IntervalBake& b) {
+    EXPECT_EQ(a.mesh_pages, b.mesh_pages);
+    EXPECT_EQ(a.path.to_light_ws, b.path.to_light_ws);
+    EXPECT_EQ(a.path.summary, b.path.summary);
+    EXPECT_EQ(a.report.intervals, b.report.intervals);
+    ASSERT_EQ(a.pages.size(), b.pages.size());
+    for (std::size_t p = 0; p < a.pages.size(); ++p) {
+        EXPECT_EQ(a.pages[p].rises, b.pages[p].rises);
+        EXPECT_EQ(a.pages[p].falls, b.pages[p].falls);
+    }
+}
+
+TEST_F(BakeFiles, AreReadAsTheyWereWritten) {
+    for (const BakeBits bits : {BakeBits::eight, BakeBits::sixteen}) {
+        const IntervalBake bake = cube(bits);
+        EXPECT_GT(bake.report.lit_texels, bake.report.texels / 4);
+        write_bake(folder_, bake);
+        const IntervalBake read = read_bake(folder_);
+        EXPECT_EQ(read.bits, bits);
+        expect_equal(bake, read);
+        EXPECT_EQ(read.scene.triangle_count(), bake.scene.triangle_count());
+    }
+}
+
+TEST_F(BakeFiles, HaveTheSameBytesEachTime) {
+    write_bake(folder_, cube(BakeBits::eight));
+    const auto first = read_file(folder_ / "page0-rise0.png", 1 << 24);
+    const auto json = read_file(folder_ / "bake.json", 1 << 24);
+    write_bake(folder_, cube(BakeBits::eight));
+    EXPECT_EQ(read_file(folder_ / "page0-rise0.png", 1 << 24), first);
+    EXPECT_EQ(read_file(folder_ / "bake.json", 1 << 24), json);
+}
+
+TEST_F(BakeFiles, DamagedOnesAreErrors) {
+    write_bake(folder_, cube(BakeBits::eight));
+    write_file(folder_ / "page0-fall0.png", "no picture");
+    EXPECT_THROW(read_bake(folder_), Error);
+    fs::remove(folder_ / "page0-fall0.png");
+    EXPECT_THROW(read_bake(folder_), Error);
+    write_file(folder_ / "bake.json", "{\"gnomon_bake\": 99}");
+    EXPECT_THROW(read_bake(folder_), Error);
+    write_file(folder_ / "bake.json", "{\"gnomon_bake\": 1");
+    EXPECT_THROW(read_bake(folder_), Error);
+    EXPECT_THROW(read_bake(folder_ / "nowhere"), Error);
+}
+
+TEST_F(BakeFiles, ReplaceNothingButABake) {
+    fs::create_directories(folder_);
+    write_file(folder_ / "letter.txt", "dear");
+    EXPECT_THROW(check_bake_folder(folder_), Error);
+    EXPECT_THROW(write_bake(folder_, cube(BakeBits::eight)), Error);
+    EXPECT_TRUE(fs::exists(folder_ / "letter.txt"));
+}
+
+TEST_F(BakeFiles, AnInterruptedBakeGoesOn) {
+    const Scene scene = make_builtin_scene("courtyard");
+    fs::create_directories(folder_);
+    const BakeOptions options{.texel_size_m = 0.15, .resume_file = folder_ / "part"};
+    StopsAt stops(0.6);  // of several parts
+    EXPECT_THROW(bake_intervals(scene, summer(64), options, stops), Error);
+    ASSERT_TRUE(fs::exists(options.resume_file));
+    EXPECT_THROW(bake_intervals(scene, summer(65), options, stops), Error);  // of another bake
+    Progress silent;
+    const IntervalBake resumed = bake_intervals(scene, summer(64), options, silent);
+    EXPECT_FALSE(fs::exists(options.resume_file));
+    expect_equal(resumed, bake_intervals(scene, summer(64),
+                                         {.texel_size_m = 0.15, .resume_file = {}}, silent));
+}
+
+TEST_F(BakeFiles, PolarNightIsNoBake) {
+    using namespace std::chrono;
+    const BakePath night = bake_path(
+        sun_path({78.2, 15.6, 0.0}, 2026y / December / 21, minutes(60)), "78.2,15.6", "2026-12-21");
+    EXPECT_EQ(night.steps(), 0);
+    EXPECT_FALSE(night.summary.empty());
+    Progress silent;
+    EXPECT_THROW(bake_intervals(make_builtin_scene("cube"), night, {}, silent), Error);
+}
+
+TEST_F(BakeFiles, TimesAreThoseOfTheDay) {
+    const BakePath path = summer(101);
+    const IntervalBake bake = cube(BakeBits::eight);
+    const IntervalPage& page = bake.pages.front();
+    const LightWindow noon{.at_step = 50.0, .width_steps = 1.0};
+    const LightWindow night{.at_step = 300.0, .width_steps = 1.0};
+    double lit = 0.0;
+    double beyond = 0.0;
+    for (unsigned y = 0; y < page.side_texels; ++y) {
+        for (unsigned x = 0; x < page.side_texels; ++x) {
+            lit += interval_visibility(page, x, y, noon);
+            beyond += interval_visibility(page, x, y, night);
+        }
+    }
+    EXPECT_GT(lit, 0.0);
+    EXPECT_EQ(beyond, 0.0);
+    EXPECT_NEAR(path.begin_s, 4.3 * 3600.0, 3600.0);
+    EXPECT_NEAR(path.end_s, 20.2 * 3600.0, 3600.0);
+}
+
+}  // namespace
+}  // namespace gnomon
