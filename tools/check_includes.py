@@ -36,7 +36,7 @@ MODULES = {
     "visibility": VISIBILITY,
     "technique": TECHNIQUE,
     "lighting": VISIBILITY | {"lighting"},
-    "report": TECHNIQUE | {"lighting", "report"},
+    "report": TECHNIQUE | {"web", "lighting", "report"},
 }
 ALL = set(MODULES)
 
