@@ -57,8 +57,8 @@ Vec3 false_color(double t) {
         DVec3(-5.435455855934631, 4.645852612178535, 26.3124352495832)};
     t = std::clamp(t, 0.0, 1.0);
     DVec3 color(0.0);
-    for (auto c = kCoefficients.rbegin(); c != kCoefficients.rend(); ++c)
-        color = color * t + *c;
+    std::for_each(kCoefficients.rbegin(), kCoefficients.rend(),
+                  [&](const DVec3& coefficient) { color = color * t + coefficient; });
     return Vec3(glm::clamp(color, 0.0, 1.0));
 }
 

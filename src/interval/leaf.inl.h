@@ -255,30 +255,30 @@ HWY_INLINE void append_indices(Pairs& pairs, Lanes lanes, int step, const LeafVi
 
 template <bool kSingle>
 HWY_INLINE void append_edges(Pairs& pairs, Lanes lanes, const Terms<kSingle>& terms, Vf error) {
-    const auto append = [&](Term term, Vf value) HWY_ATTR {
+    const auto append = [&](int term, Vf value) HWY_ATTR {
         store_some(Floats(), value, lanes, pairs.terms[term] + pairs.count);
     };
-    append(kU, terms.u);
-    append(kV, terms.v);
-    append(kDet, terms.det);
-    append(kUAlongS, terms.u_s);
-    append(kUAlongT, terms.u_t);
-    append(kVAlongS, terms.v_s);
-    append(kVAlongT, terms.v_t);
-    append(kError, error);
+    append(Term::u, terms.u);
+    append(Term::v, terms.v);
+    append(Term::det, terms.det);
+    append(Term::u_along_s, terms.u_s);
+    append(Term::u_along_t, terms.u_t);
+    append(Term::v_along_s, terms.v_s);
+    append(Term::v_along_t, terms.v_t);
+    append(Term::error, error);
 }
 
 /// Where `varying`, double decides, whatever float says.
 HWY_INLINE void append_sides(Pairs& pairs, Lanes lanes, const Sides& sides, Vf signs,
                              Lanes varying) {
-    const auto append = [&](SideTerm term, Vf value) HWY_ATTR {
+    const auto append = [&](int term, Vf value) HWY_ATTR {
         store_some(Floats(), value, lanes, pairs.terms[term] + pairs.count);
     };
-    append(kSide, hn::Xor(sides.center, signs));
-    append(kSideAlongS, hn::Xor(sides.along_s, signs));
-    append(kSideAlongT, hn::Xor(sides.along_t, signs));
+    append(Term::side, hn::Xor(sides.center, signs));
+    append(Term::side_along_s, hn::Xor(sides.along_s, signs));
+    append(Term::side_along_t, hn::Xor(sides.along_t, signs));
     const Vf infinite = splat(std::numeric_limits<float>::infinity());
-    append(kSideError, hn::IfThenElse(varying, infinite, sides.error));
+    append(Term::side_error, hn::IfThenElse(varying, infinite, sides.error));
 }
 
 HWY_INLINE Lanes lanes_of(std::uint32_t bits) {

@@ -37,21 +37,21 @@ void test_pairs(Walk& walk) {
         const std::uint64_t lit = walk.lit[step];
         if (lit == 0) continue;
         const auto term = [&](int index) HWY_ATTR { return splat(pairs.terms[index][e]); };
-        const Vf error = term(kError), minus_error = hn::Neg(error);
+        const Vf error = term(Term::error), minus_error = hn::Neg(error);
         std::uint64_t sure = 0, possible = 0;
         for (int first = 0; first < tile.texels; first += kLanes) {
             const Vf s = load(tile.s + first), t = load(tile.t + first);
             const auto at_texels = [&](int center, int along_s, int along_t) HWY_ATTR {
                 return hn::MulAdd(s, term(along_s), hn::MulAdd(t, term(along_t), term(center)));
             };
-            const Vf u = at_texels(kU, kUAlongS, kUAlongT);
-            const Vf v = at_texels(kV, kVAlongS, kVAlongT);
-            const Vf least = hn::Min(hn::Min(u, v), hn::Sub(hn::Sub(term(kDet), u), v));
+            const Vf u = at_texels(Term::u, Term::u_along_s, Term::u_along_t);
+            const Vf v = at_texels(Term::v, Term::v_along_s, Term::v_along_t);
+            const Vf least = hn::Min(hn::Min(u, v), hn::Sub(hn::Sub(term(Term::det), u), v));
             Lanes hit = hn::Gt(least, error), may_hit = hn::Ge(least, minus_error);
             if constexpr (kMixed) {
-                const Vf side = at_texels(kSide, kSideAlongS, kSideAlongT);
-                hit = hn::And(hit, hn::Gt(side, term(kSideError)));
-                may_hit = hn::And(may_hit, hn::Ge(side, hn::Neg(term(kSideError))));
+                const Vf side = at_texels(Term::side, Term::side_along_s, Term::side_along_t);
+                hit = hn::And(hit, hn::Gt(side, term(Term::side_error)));
+                may_hit = hn::And(may_hit, hn::Ge(side, hn::Neg(term(Term::side_error))));
             }
             sure |= std::uint64_t{bits_of(hit)} << first;
             possible |= std::uint64_t{bits_of(may_hit)} << first;

@@ -50,10 +50,25 @@ struct LeafVisit {
 };
 inline constexpr std::int32_t kHintLeaf = -1;
 
-/// What is linear in the direction of the sun, for one triangle at one step.
-enum Term { kU, kV, kDet, kUAlongS, kUAlongT, kVAlongS, kVAlongT, kError, kEdgeTerms };
-/// On which side of the triangle's plane a texel is, where a tile has texels on both.
-enum SideTerm { kSide = kEdgeTerms, kSideAlongS, kSideAlongT, kSideError, kAllTerms };
+/// What is linear in the direction of the sun, for one triangle at one step; and on which side of
+/// the triangle's plane a texel is, where a tile has texels on both.
+struct Term {
+    enum : int {
+        u,
+        v,
+        det,
+        u_along_s,
+        u_along_t,
+        v_along_s,
+        v_along_t,
+        error,
+        side,
+        side_along_s,
+        side_along_t,
+        side_error,
+        count
+    };
+};
 
 /// Triangles at steps that may darken some texels of the tile: to be tested texel by texel.
 struct Pairs {
@@ -63,7 +78,7 @@ struct Pairs {
 
     int count = 0;
     // A vector more: they are written a vector at a time.
-    alignas(64) float terms[kAllTerms][kCapacity + kWidth];
+    alignas(64) float terms[Term::count][kCapacity + kWidth];
     std::int32_t step[kCapacity + kWidth];
     std::int32_t leaf[kCapacity + kWidth];
     std::int32_t lane[kCapacity + kWidth];

@@ -9,7 +9,9 @@
 #include "visibility/receiver_survey.h"
 #include "visibility/seen.h"
 
+#include <algorithm>
 #include <concepts>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -41,10 +43,40 @@ struct MapOptions : BiasOptions, ReadingOptions {
     unsigned size_texels() const { return static_cast<unsigned>(map_size); }
 };
 
+/// Those of MapOptions' rows that say what is drawn, and how.
+template <std::derived_from<MapOptions> Options>
+std::vector<typename ParamTable<Options>::Row> caster_rows() {
+    return {
+        boolean<Options>("cull_casters", &Options::cull_casters,
+                         "casters whose shadow no receiver can meet are not drawn"),
+        choice<Options, CasterFaces>(
+            "faces", &Options::faces, {"all", "lit", "unlit"},
+            "of casters that close and have no holes, as a light at infinity sees them, which "
+            "faces are drawn: those towards it hide the others, and those away from it need no "
+            "bias, but leak where something stands on them"),
+        number<Options>("caster_error", &Options::caster_error, 0.0, 4.0, "texels",
+                        "casters are simplified by no more than this; receivers are moved as much "
+                        "farther towards the light"),
+        boolean<Options>(
+            "reuse_maps", &Options::reuse_maps,
+            "what is in a map stays while its light, casters and texels do: nothing is drawn of "
+            "maps that rest, and only what comes into maps that move by whole texels; casters are "
+            "then culled by the map's sides alone"),
+        boolean<Options>("multi_draw", &Options::multi_draw,
+                         "casters that are drawn alike are drawn by one command"),
+        boolean<Options>("layered", &Options::layered,
+                         "all layers of a map are drawn in one pass, where the device can; it pays "
+                         "where passes cost more than what is in them"),
+        choice<Options, SkipUniform>(
+            "skip_uniform", &Options::skip_uniform, {"automatic", "never", "always"},
+            "where bounds of the map's tiles prove a receiver lit or dark, its filter is skipped, "
+            "which changes no pixel; automatic: where that saves more than the bounds take")};
+}
+
 /// The rows of MapOptions, for the table of a technique whose options are derived from it.
 template <std::derived_from<MapOptions> Options>
 std::vector<typename ParamTable<Options>::Row> map_rows() {
-    return {
+    std::vector<typename ParamTable<Options>::Row> rows{
         integer<Options>("map_size", &Options::map_size, 16, 16384, "texels", "side of a map"),
         choice<Options, FitTo>("fit_to", &Options::fit_to, {"parts", "picture"},
                                "what maps must cover: all parts of the scene that the camera can "
@@ -82,31 +114,9 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                         "reach"),
         boolean<Options>("receiver_plane", &Options::receiver_plane,
                          "texels are compared with the receiver's plane at their centres; the "
-                         "offset and the slope then make up for a third of the filter's reach"),
-        boolean<Options>("cull_casters", &Options::cull_casters,
-                         "casters whose shadow no receiver can meet are not drawn"),
-        choice<Options, CasterFaces>(
-            "faces", &Options::faces, {"all", "lit", "unlit"},
-            "of casters that close and have no holes, as a light at infinity sees them, which "
-            "faces are drawn: those towards it hide the others, and those away from it need no "
-            "bias, but leak where something stands on them"),
-        number<Options>("caster_error", &Options::caster_error, 0.0, 4.0, "texels",
-                        "casters are simplified by no more than this; receivers are moved as much "
-                        "farther towards the light"),
-        boolean<Options>(
-            "reuse_maps", &Options::reuse_maps,
-            "what is in a map stays while its light, casters and texels do: nothing is drawn of "
-            "maps that rest, and only what comes into maps that move by whole texels; casters are "
-            "then culled by the map's sides alone"),
-        boolean<Options>("multi_draw", &Options::multi_draw,
-                         "casters that are drawn alike are drawn by one command"),
-        boolean<Options>("layered", &Options::layered,
-                         "all layers of a map are drawn in one pass, where the device can; it pays "
-                         "where passes cost more than what is in them"),
-        choice<Options, SkipUniform>(
-            "skip_uniform", &Options::skip_uniform, {"automatic", "never", "always"},
-            "where bounds of the map's tiles prove a receiver lit or dark, its filter is skipped, "
-            "which changes no pixel; automatic: where that saves more than the bounds take")};
+                         "offset and the slope then make up for a third of the filter's reach")};
+    std::ranges::copy(caster_rows<Options>(), std::back_inserter(rows));
+    return rows;
 }
 
 /// One layer of a technique's map: where its texels are, which receivers look it up, and what can
