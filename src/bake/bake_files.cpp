@@ -1,5 +1,6 @@
 #include <gnomon/bake.h>
 
+#include "bake/json_mark.h"
 #include "base/check.h"
 #include "base/file.h"
 #include "base/folder.h"
@@ -139,6 +140,10 @@ IntervalBake bake_of(const fs::path& folder, const nlohmann::json& json) {
                           .pairs = entry.at("pairs"),
                           .rises = {},
                           .falls = {}};
+        if (page.side_texels == 0 || page.pairs < 1) {
+            fail_input("{}: page {} has {} texels a side and {} pairs",
+                       (folder / "bake.json").string(), p, page.side_texels, page.pairs);
+        }
         for (int pair = 0; pair < page.pairs; ++pair) {
             append_texture(folder / texture_name(p, pair, "rise"), page.side_texels, true,
                            bake.bits, page.rises);
@@ -147,6 +152,10 @@ IntervalBake bake_of(const fs::path& folder, const nlohmann::json& json) {
         }
         bake.pages.push_back(std::move(page));
     }
+    if (std::ranges::any_of(bake.mesh_pages, [&](auto p) { return p >= bake.pages.size(); })) {
+        fail_input("{}: a mesh is on page {}; there are {}", (folder / "bake.json").string(),
+                   std::ranges::max(bake.mesh_pages), bake.pages.size());
+    }
     if (bake.mesh_pages.size() != bake.scene.meshes().size()) {
         fail_input("{}: scene.glb has {} meshes, and bake.json pages for {}", folder.string(),
                    bake.scene.meshes().size(), bake.mesh_pages.size());
@@ -154,25 +163,15 @@ IntervalBake bake_of(const fs::path& folder, const nlohmann::json& json) {
     return bake;
 }
 
-bool is_bake_json(const fs::path& path) {
-    try {
-        const std::vector<std::uint8_t> bytes = read_file(path, kMostJson_bytes);
-        const ordered_json json = ordered_json::parse(bytes, nullptr, false);
-        return json.is_object() && json.contains("gnomon_bake");
-    } catch (const Error&) {
-        return false;  // missing, a folder, unreadable: not ours
-    }
-}
-
 FolderKind bake_kind() {
-    return {.noun = "bake",
-            .mark = "bake.json",
-            .has_entry =
-                [](std::string_view name) {
-                    return name == "scene.glb" ||
-                           (name.starts_with("page") && name.ends_with(".png"));
-                },
-            .is_mark = &is_bake_json};
+    return {
+        .noun = "bake",
+        .mark = "bake.json",
+        .has_entry =
+            [](std::string_view name) {
+                return name == "scene.glb" || (name.starts_with("page") && name.ends_with(".png"));
+            },
+        .is_mark = [](const fs::path& mark) { return bake::is_json_with(mark, "gnomon_bake"); }};
 }
 
 }  // namespace

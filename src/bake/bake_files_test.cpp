@@ -102,6 +102,12 @@ TEST_F(BakeFiles, DamagedOnesAreErrors) {
     EXPECT_THROW(read_bake(folder_), Error);
     fs::remove(folder_ / "page0-fall0.png");
     EXPECT_THROW(read_bake(folder_), Error);
+    write_bake(folder_, cube(BakeBits::eight));
+    const auto bytes = read_file(folder_ / "bake.json", 1 << 24);
+    std::string json(bytes.begin(), bytes.end());
+    json.replace(json.find("\"pairs\": "), 10, "\"pairs\": -");
+    write_file(folder_ / "bake.json", json);
+    EXPECT_THROW(read_bake(folder_), Error);
     write_file(folder_ / "bake.json", "{\"gnomon_bake\": 99}");
     EXPECT_THROW(read_bake(folder_), Error);
     write_file(folder_ / "bake.json", "{\"gnomon_bake\": 1");

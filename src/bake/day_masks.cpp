@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/file.h"
+#include "base/part_progress.h"
 
 #include <algorithm>
 #include <array>
@@ -25,21 +26,6 @@ struct PartHeader {
     std::uint64_t fingerprint = 0;
     std::uint64_t receivers = 0;  ///< that are done
     std::uint64_t words = 0;      ///< of a mask
-};
-
-/// A part of a longer task.
-class PartProgress final : public Progress {
-public:
-    PartProgress(Progress& whole, double begin, double share)
-        : whole_(whole), begin_(begin), share_(share) {}
-    void report(std::string_view task, double fraction) override {
-        whole_.report(task, begin_ + share_ * fraction);
-    }
-    bool cancelled() const override { return whole_.cancelled(); }
-
-private:
-    Progress& whole_;
-    double begin_, share_;
 };
 
 void save(const std::filesystem::path& file, PartHeader header, const DayMasks& masks) {
@@ -104,7 +90,7 @@ DayMasks day_masks(const interval::Tree& tree, const interval::DayPath& path,
         while (done < receivers.size()) {
             const std::size_t count = std::min(kPartTexels, receivers.size() - done);
             const auto all = static_cast<double>(receivers.size());
-            PartProgress part(progress, static_cast<double>(done) / all,
+            PartProgress part(progress, "baking the sun", static_cast<double>(done) / all,
                               static_cast<double>(count) / all);
             const DayMasks found = interval::bake(tree, path, receivers.subspan(done, count), part);
             std::ranges::copy(found.words,

@@ -6,6 +6,7 @@
 #include "bake/thread_limit.h"
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/part_progress.h"
 #include "interval/bake.h"
 #include "lightmap/surface.h"
 #include "trace/tracer.h"
@@ -26,21 +27,6 @@ using trace::Receiver;
 constexpr std::size_t kReceiversPerPart = std::size_t{1} << 18;
 constexpr std::size_t kReceiversPerTask = std::size_t{1} << 12;
 
-/// Tells of one part of a long job.
-class PartProgress : public Progress {
-public:
-    PartProgress(Progress& whole, std::size_t part, std::size_t parts)
-        : whole_(whole), part_(static_cast<double>(part)), parts_(static_cast<double>(parts)) {}
-    void report(std::string_view, double fraction) override {
-        whole_.report("counting hours of sun", (part_ + fraction) / parts_);
-    }
-    bool cancelled() const override { return whole_.cancelled(); }
-
-private:
-    Progress& whole_;
-    double part_, parts_;
-};
-
 std::vector<SunHours> count(const Scene& scene, std::span<const Receiver> receivers,
                             const SunCalendar& calendar, bool ignore_alpha, Progress& progress) {
     const interval::Frame frame = interval::frame_around(calendar.pole_ws);
@@ -55,7 +41,9 @@ std::vector<SunHours> count(const Scene& scene, std::span<const Receiver> receiv
         std::vector<HourSums> sums(here.size());
         for (std::size_t g = 0; g < calendar.groups.size(); ++g) {
             const DayGroup& group = calendar.groups[g];
-            PartProgress part(progress, chunk * calendar.groups.size() + g, parts);
+            const auto all = static_cast<double>(parts);
+            const auto before = static_cast<double>(chunk * calendar.groups.size() + g);
+            PartProgress part(progress, "counting hours of sun", before / all, 1.0 / all);
             interval::DayMasks masks;
             if (!group.to_sun_ws.empty()) {
                 masks = interval::bake(tree, interval::DayPath(group.to_sun_ws, frame), here, part,

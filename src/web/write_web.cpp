@@ -1,5 +1,6 @@
 #include <gnomon/web.h>
 
+#include "bake/json_mark.h"
 #include "base/check.h"
 #include "base/file.h"
 #include "base/folder.h"
@@ -24,7 +25,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
-constexpr std::uint64_t kMostJson_bytes = 64 << 20;
 constexpr std::size_t kIntervalsPerPair = 4;
 
 static_assert(std::endian::native == std::endian::little, "the page's numbers are little-endian");
@@ -96,16 +96,6 @@ ordered_json json_of(const IntervalBake& bake, const std::string& title) {
             {"mesh_pages", bake.mesh_pages}};
 }
 
-bool is_web_json(const fs::path& path) {
-    try {
-        const std::vector<std::uint8_t> bytes = read_file(path, kMostJson_bytes);
-        const ordered_json json = ordered_json::parse(bytes, nullptr, false);
-        return json.is_object() && json.contains("gnomon_web");
-    } catch (const Error&) {
-        return false;  // missing, a folder, unreadable: not ours
-    }
-}
-
 FolderKind web_kind() {
     return {.noun = "page of gnomon web",
             .mark = "web.json",
@@ -115,7 +105,7 @@ FolderKind web_kind() {
                            name == "scene.glb" ||
                            (name.starts_with("page") && name.ends_with(".bin"));
                 },
-            .is_mark = &is_web_json};
+            .is_mark = [](const fs::path& mark) { return bake::is_json_with(mark, "gnomon_web"); }};
 }
 
 }  // namespace
