@@ -15,6 +15,10 @@ const float kMaxSlope = 10.0;
 // A plane at 89°: steeper ones are extended as this one, since normals of 16 bits would tell too little.
 const float kMaxGradientSlope = 50.0;
 
+// Texels' sides that a receiver's plane is followed away from the light: as far as filters of up to four
+// texels follow planes at 45°.
+const float kMaxFall = 2.0;
+
 struct TexelAt {
     float side_m;    // across the light, the longer one
     float offset_m;  // along the normal, that gains the depth that the plane gains over one texel

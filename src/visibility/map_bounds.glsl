@@ -48,6 +48,9 @@ float proven_lit(sampler2DArray bounds, float size, vec3 bounded, MapBias bias, 
     // The filter keeps planes between 0 and kNearest; a plane that is there anyway may be proven.
     bool lit = above - spread - stored >= bound.w && point.depth + rise + before <= kNearest;
     bool dark = above + spread + before + stored + biased < bound.z && point.depth - rise >= 0.0;
+    // Nor does it follow planes farther away from the light.
+    float least = bound.z + dot(bound.xy, from_middle) - dot(abs(bound.xy), r) - rounding;
+    dark = dark && (rise <= point.fall || point.depth - point.fall + stored + biased < least);
     // Beyond the map's border a filter reads the border again.
     bool inside = farthest <= bounded.z &&
                   all(lessThanEqual(abs(point.texel - 0.5 * size) + r, vec2(0.5 * size - 0.5)));

@@ -20,15 +20,17 @@ struct MapPoint {
     float depth;     // reversed; a texel that is nearer to the light hides it
     vec2 gradient;   // of the receiver's plane, depth per texel
     float cone;      // depth that texels may be nearer to the light, for each texel that they are away
+    float fall;      // depth that the plane is followed away from the light, and no farther
     float layer;
     MapSpace space;  // of its layer
 };
 
-// The receiver's own plane at texels' centres.
+// The receiver's own plane at texels' centres. Where it falls away steeply it soon ends at another surface,
+// which lies before the plane and yet behind the receiver, and does not hide it.
 vec4 plane_depths(MapPoint point, vec4 dx, vec4 dy) {
     vec4 away = sqrt(dx * dx + dy * dy);
     vec4 planes = point.depth + point.gradient.x * dx + point.gradient.y * dy + point.cone * away;
-    return clamp(planes, 0.0, kNearest);
+    return clamp(planes, max(point.depth - point.fall, 0.0), kNearest);
 }
 
 float stored_distance(sampler2DArray map, float size, vec2 texel, float layer) {

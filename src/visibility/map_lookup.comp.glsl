@@ -202,7 +202,8 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
     uvz /= w;
     MapPoint point = MapPoint(frame.size_texels * uvz.xy, uvz.z,
                               frame.bias.receiver_plane * texel.gradient,
-                              frame.bias.cone * length(texel.gradient), layer.index,
+                              frame.bias.cone * length(texel.gradient),
+                              kMaxFall * texel.side_m * max(dot(texel.z, to_light), 0.0), layer.index,
                               layer.map.space);
     float lit = known;
     if (kProof != kProofNone) {
