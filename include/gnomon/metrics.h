@@ -32,12 +32,16 @@ struct ComparisonMask {
 /// texels as projected to pixels at the receiver, but no less than the 1.5 px that aliasing
 /// explains alone; distances are exact Euclidean ones to the nearest pixel that counts and is of
 /// the other class of the truth (T > 0.5 for lit, else shadow), infinite when there is none.
-/// Artefacts are judged as stray where `texel_size_m` or the pixel size is not positive and finite,
-/// and everywhere when `texel_size_m` is empty; `mask.pixel_size_m` may then be empty too. Throws
-/// Error{input} when sizes differ, an image has more than 1 channel, or a visibility or truth is
-/// not finite.
+/// Where the light meets a receiver aslant, texels that lie across the light are as much longer on
+/// the receiver: `texel_slant_px`, 2 channels, is by how many pixels (x right, y down) one reaches
+/// there along the light. Pixels up to so many texels away in that direction, on the same plane,
+/// are near too; empty: none are. Artefacts are judged as stray where `texel_size_m` or the pixel
+/// size is not positive and finite, and everywhere when `texel_size_m` is empty;
+/// `mask.pixel_size_m` may then be empty too. Throws Error{input} when sizes or numbers of channels
+/// differ from these, or a visibility or truth is not finite.
 Comparison compare(const Image& visibility, const Image& truth, const ComparisonMask& mask,
-                   const Image& texel_size_m = {}, float filter_radius_texels = 0.0f);
+                   const Image& texel_size_m = {}, float filter_radius_texels = 0.0f,
+                   const Image& texel_slant_px = {});
 
 /// NVIDIA FLIP for low-dynamic-range pictures: 3 channels, sRGB-encoded, clamped to [0, 1].
 /// 1-channel map in [0, 1] per pixel. P. Andersson et al., "FLIP: A Difference Evaluator for

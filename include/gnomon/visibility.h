@@ -41,6 +41,11 @@ public:
     /// technique has none.
     const Image& texel_size_m() const;
 
+    /// 2 channels: by how many pixels (x right, y down) a texel reaches on its receiver along the
+    /// light, which a plane that the light meets aslant lengthens; up to 89°. Empty when there are
+    /// no texels or they lie on the receivers themselves.
+    const Image& texel_slant_px() const;
+
     /// How many texels from its centre the technique's filter reaches; 0 without texels.
     float filter_radius_texels() const;
 

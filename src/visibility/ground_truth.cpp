@@ -84,7 +84,7 @@ ComparisonMask comparison_mask(Context& context, const Frame& frame) {
 Comparison compare(const Visibility& visibility, const Visibility& truth,
                    const ComparisonMask& mask) {
     return compare(visibility.image(), truth.image(), mask, visibility.texel_size_m(),
-                   visibility.filter_radius_texels());
+                   visibility.filter_radius_texels(), visibility.texel_slant_px());
 }
 
 }  // namespace gnomon

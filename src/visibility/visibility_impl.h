@@ -24,17 +24,19 @@ public:
     const Image& on_host();
     gpu::Image& on_device();
 
-    /// Tells the texels of what was rendered for `frame`.
+    /// Tells the texels of what was rendered for `frame`, which lie across the light.
     void set_texels(TexelSize texel_size, float filter_radius_texels, const Frame& frame);
-    /// The same by one value a pixel, for texels that differ by more than where they are.
+    /// The same by one value a pixel, of texels that lie on the receivers.
     void set_texels(Image texel_size_m, float filter_radius_texels);
     /// Made from the receivers at the first call, unless it was given.
     const Image& texel_size_m();
+    const Image& texel_slant_px();
     float filter_radius_texels() const { return filter_radius_texels_; }
 
 private:
     void reset(Context::Impl& context, Extent size);
     void allocate_on_device();
+    void make_texel_images();
 
     Context::Impl* context_ = nullptr;
     Extent size_;
@@ -44,7 +46,7 @@ private:
     TexelSize texel_size_;
     float filter_radius_texels_ = 0.0f;
     std::optional<Frame> frame_;
-    Image texel_image_;
+    Image texel_image_, texel_slant_;
 };
 
 }  // namespace gnomon
