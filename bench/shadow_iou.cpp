@@ -6,7 +6,7 @@
 // VIEW.json has eye, target, fovy_deg, near and to_sun, as the scenes of bench/peers have. At 1920
 // x 1080, the sun without extent. IoU: of the receivers whose cosine to the light is 0.08 or more,
 // those in shadow in both, over those in shadow in either; a half decides. Times are medians of
-// seven frames.
+// seven frames, which the techniques render by turns.
 
 #include <gnomon/error.h>
 #include <gnomon/gnomon.h>
@@ -24,6 +24,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gnomon {
@@ -63,23 +64,28 @@ double iou_percent(const std::vector<trace::Receiver>& receivers, const Frame& f
            static_cast<double>(std::max<std::size_t>(either, 1));
 }
 
-void judge(Context& context, const Frame& frame, const Image& truth, const std::string& spec) {
-    Progress silent;
-    const std::unique_ptr<Technique> technique = technique_of(context, spec);
-    Visibility found = technique->render(frame);
+/// One technique with its parameters, and what its frames took.
+struct Contestant {
+    std::string spec;
+    std::unique_ptr<Technique> technique;
+    Visibility found;
     std::vector<double> total_ms;
     std::map<std::string, std::vector<double>> passes_ms;
-    for (int i = 0; i < kFrames; ++i) {
-        technique->render(frame, found);
-        const RenderStats stats = technique->last_render();
-        total_ms.push_back(stats.cpu_ms + stats.gpu_ms);
-        for (const PassTime& pass : stats.passes)
-            passes_ms[pass.name].push_back(pass.ms);
-    }
-    const std::shared_ptr<FrameReceivers> receivers = context.impl().receiver_points(frame, silent);
-    fmt::print("{:44} IoU {:6.2f} %  {:7.1f} ms", spec,
-               iou_percent(receivers->points, frame, truth, found.image()), median(total_ms));
-    for (const auto& [name, ms] : passes_ms)
+};
+
+void render(Contestant& contestant, const Frame& frame) {
+    contestant.technique->render(frame, contestant.found);
+    const RenderStats stats = contestant.technique->last_render();
+    contestant.total_ms.push_back(stats.cpu_ms + stats.gpu_ms);
+    contestant.passes_ms["cpu"].push_back(stats.cpu_ms);
+    for (const PassTime& pass : stats.passes)
+        contestant.passes_ms[pass.name].push_back(pass.ms);
+}
+
+void print(const Contestant& contestant, double iou) {
+    fmt::print("{:44} IoU {:6.2f} %  {:7.1f} ms", contestant.spec, iou,
+               median(contestant.total_ms));
+    for (const auto& [name, ms] : contestant.passes_ms)
         fmt::print("  {} {:.1f}", name, median(ms));
     fmt::print("\n");
     std::fflush(stdout);
@@ -92,8 +98,22 @@ int run(int argc, char** argv) {
     Context context;
     const Frame frame = frame_of(load_scene(argv[1]), nlohmann::json::parse(file));
     const Visibility truth = trace_visibility(context, frame);
-    for (int i = 3; i < argc; ++i)
-        judge(context, frame, truth.image(), argv[i]);
+    std::vector<Contestant> contestants;
+    for (int i = 3; i < argc; ++i) {
+        std::unique_ptr<Technique> technique = technique_of(context, argv[i]);
+        Visibility found = technique->render(frame);
+        contestants.push_back({argv[i], std::move(technique), std::move(found), {}, {}});
+    }
+    for (int i = 0; i < kFrames; ++i) {
+        for (Contestant& contestant : contestants)
+            render(contestant, frame);
+    }
+    Progress silent;
+    const std::shared_ptr<FrameReceivers> receivers = context.impl().receiver_points(frame, silent);
+    for (Contestant& contestant : contestants) {
+        print(contestant,
+              iou_percent(receivers->points, frame, truth.image(), contestant.found.image()));
+    }
     return 0;
 }
 
