@@ -28,8 +28,8 @@ struct MapPoint {
 // The receiver's own plane at texels' centres. Where it falls away steeply it soon ends at another surface,
 // which lies before the plane and yet behind the receiver, and does not hide it.
 vec4 plane_depths(MapPoint point, vec4 dx, vec4 dy) {
-    vec4 away = sqrt(dx * dx + dy * dy);
-    vec4 planes = point.depth + point.gradient.x * dx + point.gradient.y * dy + point.cone * away;
+    vec4 planes = point.depth + point.gradient.x * dx + point.gradient.y * dy;
+    if (kFilter >= kFilterDisc) planes += point.cone * sqrt(dx * dx + dy * dy);  // else it is 0
     return clamp(planes, max(point.depth - point.fall, 0.0), kNearest);
 }
 

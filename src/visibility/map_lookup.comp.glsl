@@ -236,7 +236,8 @@ void main() {
     float depth = texelFetch(depths, at, 0).x;
     vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, max(depth, kLeastDepth));
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
-    vec3 to_light = normalize(to_light_ws(push.light, p_es));
+    vec3 to_light = to_light_ws(push.light, p_es);
+    if (kLightKind != kLightDirectional) to_light = normalize(to_light);  // which is that already
     Layer layer = layer_of(depth, p_es, gradient_noise(pixel));
     TexelAt texel = kAffine != 0u
                         ? affine_texel(layer.map, frame.size_texels, normal_ws, to_light)
