@@ -41,12 +41,20 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
 }
 
 PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& seen,
-                                             const LightFit& fit, DepthRange range) {
+                                             const LightFit& fit, DepthRange range) const {
     const DVec3 to_light_ws(std::get<DirectionalLight>(frame.light).to_light_ws);
-    return {
+    PlannedLayer layer{
         {fit, range.near_m},
         CasterVolume(fit, to_light_ws, visible_planes(frame.camera, frame.size, seen.bounds, range),
                      static_cast<double>(frame.scene.bounds().diagonal()))};
+    if (!seen.tiles.empty() && fit.affine) {
+        std::vector<Box3> receivers_ws;
+        for (const SeenTile& tile : seen.tiles)
+            receivers_ws.push_back(tile.bounds);
+        layer.casters.keep_before(
+            ReceiverMask(fit, receivers_ws, static_cast<double>(options_.margin_texels())));
+    }
+    return layer;
 }
 
 PlannedLayer MapTechnique::local_layer(const Frame& frame, const Seen& seen, const LightView& view,

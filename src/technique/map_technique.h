@@ -146,8 +146,8 @@ protected:
     virtual MapPlan plan(const Frame& frame, const Seen& seen) const = 0;
 
     /// A layer of the map of a light at infinity, for the receivers within a range of distances.
-    static PlannedLayer directional_layer(const Frame& frame, const Seen& seen, const LightFit& fit,
-                                          DepthRange range);
+    PlannedLayer directional_layer(const Frame& frame, const Seen& seen, const LightFit& fit,
+                                   DepthRange range) const;
 
     /// A layer of the map of a light within the world. Tight: fitted to the receivers in its view.
     PlannedLayer local_layer(const Frame& frame, const Seen& seen, const LightView& view,

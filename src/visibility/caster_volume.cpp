@@ -62,7 +62,9 @@ void CasterVolume::keep_within(const LightFit& fit, const TexelRect& texels) {
 
 bool CasterVolume::holds(const Box3& box_ws) const {
     return std::ranges::all_of(
-        sides_, [&](const Side& side) { return reach(side.plane, box_ws) > side.touching_m; });
+               sides_,
+               [&](const Side& side) { return reach(side.plane, box_ws) > side.touching_m; }) &&
+           receivers_.is_before_any(box_ws);
 }
 
 }  // namespace gnomon

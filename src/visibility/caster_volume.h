@@ -2,10 +2,12 @@
 
 #include "visibility/light_fit.h"
 #include "visibility/map_scroll.h"
+#include "visibility/receiver_mask.h"
 
 #include <glm/ext/vector_double4.hpp>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gnomon {
@@ -31,6 +33,9 @@ public:
     /// Leaves out what cannot be seen in a part of the map.
     void keep_within(const LightFit& fit, const TexelRect& texels);
 
+    /// Leaves out what no receiver of the mask is behind.
+    void keep_before(ReceiverMask receivers) { receivers_ = std::move(receivers); }
+
     /// False only when nothing in the box can cast a shadow into the map.
     bool holds(const Box3& box_ws) const;
 
@@ -40,6 +45,7 @@ private:
         double touching_m = 0.0;  ///< casters that reach no farther in than this only touch
     };
     std::vector<Side> sides_;
+    ReceiverMask receivers_;
 };
 
 }  // namespace gnomon

@@ -3,7 +3,12 @@
 #include "receiver_survey.comp.spv.h"
 #include "visibility/receiver_survey.shared.h"
 
+#include <glm/ext/matrix_double4x4.hpp>
+
+#include <algorithm>
+#include <bit>
 #include <cstring>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -11,13 +16,88 @@ namespace gnomon {
 
 namespace {
 
-/// Of distances that come from depths in floats.
+constexpr unsigned kBlock_px = shared::kSurveyBlock_px;
+
+/// Along a side of a tile. Boxes of larger tiles are less tight, of smaller ones not much tighter,
+/// while the host takes longer over them.
+constexpr unsigned kTileBlocks = 4;
+
+/// Of distances and positions that come from depths in floats, relative to the distance, or to the
+/// range of a parallel camera.
 constexpr double kRounding = 1e-5;
 
-Extent tiles_of(Extent size) {
-    constexpr unsigned kTile = shared::kSurveyTile_px;
-    return {(size.width + kTile - 1) / kTile, (size.height + kTile - 1) / kTile};
+constexpr unsigned kGroupSize = 8;
+
+Extent blocks_of(Extent size) {
+    return {(size.width + kBlock_px - 1) / kBlock_px, (size.height + kBlock_px - 1) / kBlock_px};
 }
+
+shared::SurveyedBlock both(const shared::SurveyedBlock& a, const shared::SurveyedBlock& b) {
+    return {glm::min(a.low_es, b.low_es), glm::max(a.high_es, b.high_es),
+            std::max(a.nearest, b.nearest), std::min(a.farthest, b.farthest), a.depths | b.depths};
+}
+
+/// All depths from `farthest` to `nearest` that are `step` steps below 1.
+struct DepthStep {
+    float nearest, farthest;
+
+    DepthStep(const shared::SurveyedBlock& of, unsigned step)
+        : nearest(std::min(of.nearest, depth(step))),
+          farthest(std::max(of.farthest, step + 1 < shared::kSurveyDepths ? depth(step + 1) : 0)) {}
+
+private:
+    static float depth(unsigned step) {
+        return std::bit_cast<float>(shared::kBitsOfOne - (step << shared::kSurveyDepthShift));
+    }
+};
+
+/// Turns pixels into boxes.
+class Picture {
+public:
+    Picture(const Camera& camera, Extent size)
+        : camera_(camera), size_(size), eye_ws_(camera.eye_ws()) {
+        glm::dmat4 view(camera.view_from_world);
+        view[3] = view * glm::dvec4(eye_ws_, 1.0);
+        es_from_clip_ = glm::inverse(glm::dmat4(camera.clip_from_view(size)) * view);
+    }
+
+    /// Of the receivers in a tile, `at` blocks from the corner, at some of its depths.
+    SeenTile tile(const shared::SurveyedBlock& found, const DepthStep& depths, Extent at) const {
+        const double far_m = distance_at(camera_, size_, depths.farthest);
+        const double near_m = distance_at(camera_, size_, depths.nearest);
+        const double rounding_m =
+            kRounding * std::max(far_m, static_cast<double>(camera_.ortho_depth_m));
+        DVec3 low(std::numeric_limits<double>::infinity());
+        DVec3 high = -low;
+        for (unsigned i = 0; i < 8; ++i) {
+            const DVec3 p_es =
+                position_es({at.width + ((i & 1) != 0 ? kTileBlocks : 0),
+                             at.height + ((i & 2) != 0 ? kTileBlocks : 0)},
+                            static_cast<double>((i & 4) != 0 ? depths.nearest : depths.farthest));
+            low = glm::min(low, p_es);
+            high = glm::max(high, p_es);
+        }
+        Box3 bounds;
+        bounds.include(Vec3(eye_ws_ + glm::max(low - rounding_m, DVec3(found.low_es))));
+        bounds.include(Vec3(eye_ws_ + glm::min(high + rounding_m, DVec3(found.high_es))));
+        return {bounds, {near_m - rounding_m, far_m + rounding_m}};
+    }
+
+private:
+    /// Of a corner of a block.
+    DVec3 position_es(Extent block, double depth) const {
+        const glm::dvec4 p =
+            es_from_clip_ * glm::dvec4(2.0 * kBlock_px * block.width / size_.width - 1.0,
+                                       2.0 * kBlock_px * block.height / size_.height - 1.0, depth,
+                                       1.0);
+        return DVec3(p) / p.w;
+    }
+
+    const Camera& camera_;
+    Extent size_;
+    DVec3 eye_ws_;
+    glm::dmat4 es_from_clip_{1.0};
+};
 
 }  // namespace
 
@@ -32,35 +112,44 @@ ReceiverSurvey::ReceiverSurvey(const gpu::Device& device) : device_(device), nea
 void ReceiverSurvey::record(gpu::Commands& commands, const raster::Receivers& receivers) {
     camera_ = receivers.camera;
     size_ = receivers.size;
-    const Extent tiles = tiles_of(size_);
+    const Extent blocks = blocks_of(size_);
     const std::uint64_t bytes =
-        std::uint64_t{tiles.width} * tiles.height * sizeof(shared::SurveyedTile);
-    if (!tiles_ || tiles_.size_bytes() != bytes) {
-        tiles_ = gpu::Buffer(device_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                             gpu::Placement::readback);
+        std::uint64_t{blocks.width} * blocks.height * sizeof(shared::SurveyedBlock);
+    if (!blocks_ || blocks_.size_bytes() != bytes) {
+        blocks_ = gpu::Buffer(device_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                              gpu::Placement::readback);
     }
-    commands.use(tiles_, gpu::Use::storage_write);
+    commands.use(blocks_, gpu::Use::storage_write);
     commands.bind(pipeline_,
-                  {gpu::Texture{receivers.depth.view(), &nearest_}, gpu::StorageBuffer{&tiles_}});
+                  {gpu::Texture{receivers.depth.view(), &nearest_}, gpu::StorageBuffer{&blocks_}});
     commands.push(pipeline_, shared::SurveyPush{.es_from_clip = receivers.eye_from_clip(),
-                                                .size = {size_.width, size_.height}});
-    commands.dispatch(tiles, 1);
-    commands.use(tiles_, gpu::Use::host_read);
+                                                .size = {size_.width, size_.height},
+                                                .blocks = blocks.width});
+    commands.dispatch(blocks, kGroupSize);
+    commands.use(blocks_, gpu::Use::host_read);
 }
 
+// What a tile sees at one depth is boxed by itself: one box around a tree and the hills beyond it
+// would hold all that is between.
 Seen ReceiverSurvey::seen() {
-    std::vector<shared::SurveyedTile> found(tiles_.size_bytes() / sizeof(shared::SurveyedTile));
-    std::memcpy(found.data(), tiles_.mapped(), tiles_.size_bytes());
-    const Vec3 eye_ws = camera_.eye_ws();
+    const Extent blocks = blocks_of(size_);
+    std::vector<shared::SurveyedBlock> found(std::size_t{blocks.width} * blocks.height);
+    std::memcpy(found.data(), blocks_.mapped(), blocks_.size_bytes());
+    const Picture picture(camera_, size_);
     std::vector<SeenTile> tiles;
-    for (const shared::SurveyedTile& tile : found) {
-        if (!(tile.nearest > 0.0f)) continue;
-        Box3 bounds;
-        bounds.include(eye_ws + Vec3(tile.low_es));
-        bounds.include(eye_ws + Vec3(tile.high_es));
-        tiles.push_back({bounds,
-                         {(1.0 - kRounding) * distance_at(camera_, size_, tile.nearest),
-                          (1.0 + kRounding) * distance_at(camera_, size_, tile.farthest)}});
+    for (unsigned y = 0; y < blocks.height; y += kTileBlocks) {
+        for (unsigned x = 0; x < blocks.width; x += kTileBlocks) {
+            shared::SurveyedBlock tile = found[std::size_t{y} * blocks.width + x];
+            for (unsigned j = y; j < std::min(y + kTileBlocks, blocks.height); ++j) {
+                for (unsigned i = x; i < std::min(x + kTileBlocks, blocks.width); ++i)
+                    tile = both(tile, found[std::size_t{j} * blocks.width + i]);
+            }
+            std::uint64_t depths = tile.depths.x | std::uint64_t{tile.depths.y} << 32;
+            for (; depths != 0; depths &= depths - 1) {
+                const DepthStep step(tile, static_cast<unsigned>(std::countr_zero(depths)));
+                tiles.push_back(picture.tile(tile, step, {x, y}));
+            }
+        }
     }
     return seen_in(std::move(tiles));
 }

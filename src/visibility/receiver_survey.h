@@ -9,8 +9,9 @@
 namespace gnomon {
 
 /// Finds where a picture's receivers are, from its depths: A. Lauritzen, M. Salvi, A. Lefohn,
-/// "Sample Distribution Shadow Maps", I3D 2011. Departure: bounds are kept tile by tile and read by
-/// the host, which plans maps and culls casters by them.
+/// "Sample Distribution Shadow Maps", I3D 2011. Departures: bounds are kept tile by tile, and in
+/// each depth by depth, as T. Harada, "A 2.5D Culling for Forward+", SIGGRAPH Asia 2012 technical
+/// briefs, does; they are read by the host, which plans maps and culls casters by them.
 class ReceiverSurvey {
 public:
     explicit ReceiverSurvey(const gpu::Device& device);
@@ -20,13 +21,13 @@ public:
     /// When the device has finished.
     Seen seen();
 
-    std::uint64_t memory_bytes() const { return tiles_.memory_bytes(); }
+    std::uint64_t memory_bytes() const { return blocks_.memory_bytes(); }
 
 private:
     const gpu::Device& device_;
     gpu::Pipeline pipeline_;
     gpu::Sampler nearest_;
-    gpu::Buffer tiles_;
+    gpu::Buffer blocks_;
     Camera camera_;
     Extent size_;
 };
