@@ -142,8 +142,12 @@ def faults_of_file(root, path):
         yield 1, "a header starts with #pragma once"
     if len(lines) > MAX_LINES:
         yield MAX_LINES + 1, f"{len(lines)} lines, more than {MAX_LINES}: split the file"
+    seen = set()
     for number, line in enumerate(lines, 1):
         if match := INCLUDE.match(line):
+            if path.suffix != ".glsl" and match.group() in seen:
+                yield number, f"{match.group().strip()} stands here twice"
+            seen.add(match.group())
             if fault := fault_of_include(place, *match.groups()):
                 yield number, fault
 

@@ -94,6 +94,10 @@ class CheckIncludes(unittest.TestCase):
         self.assert_right("src/base/a.cpp", *["int a;"] * limit)
         self.assertIn(f"{limit + 1}: ", self.faults("src/base/a.cpp", *["int a;"] * (limit + 1))[0])
 
+    def test_a_header_is_included_once(self):
+        faults = self.faults("src/base/a.cpp", "#include <map>", "int a;", "#include <map>")
+        self.assertEqual(faults, ["3: #include <map> stands here twice"])
+
     def test_unknown_modules_are_faults(self):
         self.assertIn("no module", self.faults("src/misc/a.cpp", "int a;")[0])
         self.assertIn("no module", self.faults("src/a.cpp", "int a;")[0])
