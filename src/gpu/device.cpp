@@ -1,6 +1,7 @@
 #include "gpu/device.h"
 
 #include "base/check.h"
+#include "gpu/pipeline.h"
 
 #include <array>
 
@@ -21,7 +22,8 @@ OptionalFeatures optional_features(VkPhysicalDevice device) {
 
 }  // namespace
 
-Device::Device(const ContextOptions& options) : instance_(options.validation) {
+Device::Device(const ContextOptions& options)
+    : instance_(options.validation), pipelines_(std::make_unique<PipelineCache>()) {
     const std::vector<Candidate> candidates = rank_devices(instance_);
     create(choose_device(candidates, options.device));
 }
@@ -85,6 +87,7 @@ void Device::create(const Candidate& candidate) {
 Device::~Device() {
     if (device_ == VK_NULL_HANDLE) return;
     vkDeviceWaitIdle(device_);
+    pipelines_.reset();
     vkDestroyDevice(device_, nullptr);
 }
 

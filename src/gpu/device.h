@@ -57,7 +57,10 @@ struct OptionalFeatures {
     bool layered_output = false;  ///< vertex shaders choose the layer that they draw into
 };
 
-/// A logical device with one queue that can draw, compute and copy.
+class PipelineCache;  // pipeline.h
+
+/// A logical device with one queue that can draw, compute and copy. It outlives all that is made
+/// with it.
 class Device {
 public:
     explicit Device(const ContextOptions& options);
@@ -74,6 +77,8 @@ public:
     const VkPhysicalDeviceLimits& limits() const { return limits_; }
     /// Whether pipelines may have tessellation stages, and clip distances.
     bool tessellates() const { return tessellates_; }
+    /// What Pipeline compiles with.
+    PipelineCache& pipelines() const { return *pipelines_; }
     std::vector<std::string> validation_messages() const { return instance_.messages(); }
 
     /// Index of a memory type of `allowed` with all `flags`, or -1.
@@ -92,6 +97,7 @@ private:
     VkPhysicalDeviceLimits limits_{};
     bool tessellates_ = false;
     VkPhysicalDeviceMemoryProperties memory_{};
+    std::unique_ptr<PipelineCache> pipelines_;
 };
 
 }  // namespace gnomon::gpu

@@ -5,6 +5,8 @@
 #include <array>
 #include <cassert>
 #include <memory>
+#include <string>
+#include <type_traits>
 #include <utility>
 
 namespace gnomon::gpu {
@@ -136,40 +138,133 @@ constexpr VkPipelineDynamicStateCreateInfo kDynamic{
     .dynamicStateCount = static_cast<std::uint32_t>(kDynamicStates.size()),
     .pDynamicStates = kDynamicStates.data()};
 
+/// The bytes of all that a pipeline is made from, each list after its length. Structures are taken
+/// apart into all of their members, so that one added later does not compile until it is here.
+class Key {
+public:
+    explicit Key(const ComputePipelineInfo& info) {
+        const auto& [code, layout, constants] = info;
+        add(code, layout, constants);
+    }
+    explicit Key(const GraphicsPipelineInfo& info) {
+        const auto& [vertex, fragment, tessellation_control, tessellation_evaluation, layout,
+                     color_formats, depth_format, attributes, vertex_stride, instance_stride,
+                     depth_write, depth_compare, depth_clamp, add_colors,
+                     stencil_count_depth_fail] = info;
+        add(vertex, fragment, tessellation_control, tessellation_evaluation, layout, color_formats,
+            depth_format, attributes, vertex_stride, instance_stride, depth_write, depth_compare,
+            depth_clamp, add_colors, stencil_count_depth_fail);
+    }
+    std::string bytes() && { return std::move(bytes_); }
+
+private:
+    template <typename... Fields>
+    void add(const Fields&... fields) {
+        (add_one(fields), ...);
+    }
+    void add_one(const PipelineLayoutInfo& layout) {
+        const auto& [bindings, push_bytes] = layout;
+        add(bindings, push_bytes);
+    }
+    template <typename Value>
+    void add_one(const std::vector<Value>& values) {
+        add_one(std::span(values));
+    }
+    template <typename Value>
+    void add_one(std::span<Value> values) {
+        add_one(values.size());
+        add_bytes(values);
+    }
+    template <typename Value>
+    requires std::is_scalar_v<Value>
+    void add_one(Value value) { add_bytes(std::span(&value, 1)); }
+    template <typename Value>
+    void add_bytes(std::span<Value> values) {
+        static_assert(std::has_unique_object_representations_v<Value>,
+                      "padding would make keys of equal values differ");
+        bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+    }
+
+    std::string bytes_;
+};
+
 }  // namespace
 
-void Pipeline::make_layout() {
+template <typename Info>
+std::shared_ptr<const CompiledPipeline> PipelineCache::find_or_make(const Device& device,
+                                                                    const Info& info) {
+    std::string key = Key(info).bytes();
+    auto found = entries_.find(key);
+    if (found == entries_.end()) {
+        drop_spare();
+        auto made = std::make_shared<const CompiledPipeline>(device, info);
+        found = entries_.emplace(std::move(key), Entry{std::move(made)}).first;
+    }
+    found->second.asked = ++calls_;
+    return found->second.compiled;
+}
+
+std::shared_ptr<const CompiledPipeline> PipelineCache::get(const Device& device,
+                                                           const ComputePipelineInfo& info) {
+    return find_or_make(device, info);
+}
+
+std::shared_ptr<const CompiledPipeline> PipelineCache::get(const Device& device,
+                                                           const GraphicsPipelineInfo& info) {
+    return find_or_make(device, info);
+}
+
+/// Drops the one that was asked for longest ago when there are enough.
+void PipelineCache::drop_spare() {
+    std::size_t spare = 0;
+    auto oldest = entries_.end();
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+        if (entry->second.compiled.use_count() > 1) continue;
+        ++spare;
+        if (oldest == entries_.end() || entry->second.asked < oldest->second.asked) oldest = entry;
+    }
+    if (spare >= kMostSpare) entries_.erase(oldest);
+}
+
+Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info)
+    : compiled_(device.pipelines().get(device, info)), layout_info_(info.layout) {}
+
+Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info)
+    : compiled_(device.pipelines().get(device, info)),
+      bind_point_(VK_PIPELINE_BIND_POINT_GRAPHICS),
+      stages_(GraphicsStages::flags(info)),
+      layout_info_(info.layout) {}
+
+void CompiledPipeline::make_layout(const PipelineLayoutInfo& info, VkShaderStageFlags stages) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
-    for (const BindingType type : layout_info_.bindings) {
+    for (const BindingType type : info.bindings) {
         bindings.push_back({.binding = static_cast<std::uint32_t>(bindings.size()),
                             .descriptorType = descriptor_type(type),
                             .descriptorCount = 1,
-                            .stageFlags = stages_});
+                            .stageFlags = stages});
     }
     const VkDescriptorSetLayoutCreateInfo set{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
         .bindingCount = static_cast<std::uint32_t>(bindings.size()),
         .pBindings = bindings.data()};
-    check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &set_layout_),
+    check(vkCreateDescriptorSetLayout(device_.handle(), &set, nullptr, &set_layout_),
           "creating a descriptor layout");
-    const VkPushConstantRange push{stages_, 0, layout_info_.push_bytes};
-    const VkPipelineLayoutCreateInfo layout{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = 1,
-        .pSetLayouts = &set_layout_,
-        .pushConstantRangeCount = layout_info_.push_bytes > 0 ? 1u : 0u,
-        .pPushConstantRanges = &push};
-    check(vkCreatePipelineLayout(device_->handle(), &layout, nullptr, &layout_),
+    const VkPushConstantRange push{stages, 0, info.push_bytes};
+    const VkPipelineLayoutCreateInfo layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                            .setLayoutCount = 1,
+                                            .pSetLayouts = &set_layout_,
+                                            .pushConstantRangeCount = info.push_bytes > 0 ? 1u : 0u,
+                                            .pPushConstantRanges = &push};
+    check(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, &layout_),
           "creating a pipeline layout");
 }
 
 // Delegating makes the object whole at once, so that its destructor frees what was made before a
 // step that fails.
-Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info) : Pipeline() {
-    device_ = &device;
-    layout_info_ = info.layout;
-    make_layout();
+CompiledPipeline::CompiledPipeline(const Device& device, const ComputePipelineInfo& info)
+    : CompiledPipeline(device) {
+    make_layout(info.layout, VK_SHADER_STAGE_COMPUTE_BIT);
     const ShaderModule shader(device, info.code);
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t i = 0; i < info.constants.size(); ++i) {
@@ -189,12 +284,9 @@ Pipeline::Pipeline(const Device& device, const ComputePipelineInfo& info) : Pipe
         "creating a compute pipeline");
 }
 
-Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info) : Pipeline() {
-    device_ = &device;
-    bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    stages_ = GraphicsStages::flags(info);
-    layout_info_ = info.layout;
-    make_layout();
+CompiledPipeline::CompiledPipeline(const Device& device, const GraphicsPipelineInfo& info)
+    : CompiledPipeline(device) {
+    make_layout(info.layout, GraphicsStages::flags(info));
     const GraphicsStages stages(device, info);
     const bool tessellates = !info.tessellation_control.empty();
     const std::array<VkVertexInputBindingDescription, 2> bindings{
@@ -247,26 +339,10 @@ Pipeline::Pipeline(const Device& device, const GraphicsPipelineInfo& info) : Pip
         "creating a graphics pipeline");
 }
 
-Pipeline::~Pipeline() {
-    if (device_ == nullptr) return;
-    vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
-    vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);
-    vkDestroyDescriptorSetLayout(device_->handle(), set_layout_, nullptr);
-}
-
-Pipeline::Pipeline(Pipeline&& other) noexcept {
-    *this = std::move(other);
-}
-
-Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
-    std::swap(device_, other.device_);
-    std::swap(pipeline_, other.pipeline_);
-    std::swap(layout_, other.layout_);
-    std::swap(set_layout_, other.set_layout_);
-    std::swap(bind_point_, other.bind_point_);
-    std::swap(stages_, other.stages_);
-    std::swap(layout_info_, other.layout_info_);
-    return *this;
+CompiledPipeline::~CompiledPipeline() {
+    vkDestroyPipeline(device_.handle(), pipeline_, nullptr);
+    vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
+    vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);
 }
 
 }  // namespace gnomon::gpu
