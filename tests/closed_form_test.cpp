@@ -26,17 +26,29 @@ struct EyeRay {
     DVec3 origin, direction;
 };
 
-EyeRay eye_ray(const Camera& camera, Extent size, double x_px, double y_px) {
-    const glm::dmat4 world_from_clip =
-        glm::inverse(glm::dmat4(camera.clip_from_view(size)) * glm::dmat4(camera.view_from_world));
-    const auto at_depth = [&](double depth) {
-        const glm::dvec4 p = world_from_clip * glm::dvec4(2.0 * x_px / size.width - 1.0,
-                                                          2.0 * y_px / size.height - 1.0, depth, 1);
-        return DVec3(p) / p.w;
-    };
-    const DVec3 near = at_depth(1.0);
-    return {near, at_depth(0.5) - near};
-}
+/// The rays through a picture's places.
+class EyeRays {
+public:
+    explicit EyeRays(const Frame& frame)
+        : size_(frame.size),
+          world_from_clip_(glm::inverse(glm::dmat4(frame.camera.clip_from_view(frame.size)) *
+                                        glm::dmat4(frame.camera.view_from_world))) {}
+
+    EyeRay at(double x_px, double y_px) const {
+        const auto at_depth = [&](double depth) {
+            const glm::dvec4 p =
+                world_from_clip_ * glm::dvec4(2.0 * x_px / size_.width - 1.0,
+                                              2.0 * y_px / size_.height - 1.0, depth, 1);
+            return DVec3(p) / p.w;
+        };
+        const DVec3 near = at_depth(1.0);
+        return {near, at_depth(0.5) - near};
+    }
+
+private:
+    Extent size_;
+    glm::dmat4 world_from_clip_;
+};
 
 // The scene `cube`: a cube over the ground y = 0, |x| and |z| below 0.5, up to y = 1, on a ground
 // of 10 m. Its sun makes a point at height h cast to (-0.8 h, 0, 0.6 h).
@@ -75,13 +87,14 @@ double cube_visibility(const EyeRay& ray) {
 }
 
 /// The value that the picture has all over the disc of `radius_px` around a place, or none.
-std::optional<double> value_around(const Frame& frame, double x_px, double y_px, double radius_px) {
+std::optional<double> value_around(const EyeRays& rays, double x_px, double y_px,
+                                   double radius_px) {
     constexpr int kDirections = 32;
-    const double value = cube_visibility(eye_ray(frame.camera, frame.size, x_px, y_px));
+    const double value = cube_visibility(rays.at(x_px, y_px));
     for (int i = 0; i < kDirections; ++i) {
         const double turn = 2.0 * kPiD * i / kDirections;
-        const EyeRay ray = eye_ray(frame.camera, frame.size, x_px + radius_px * std::cos(turn),
-                                   y_px + radius_px * std::sin(turn));
+        const EyeRay ray =
+            rays.at(x_px + radius_px * std::cos(turn), y_px + radius_px * std::sin(turn));
         if (cube_visibility(ray) != value) return std::nullopt;
     }
     return value;
@@ -100,6 +113,7 @@ Frame cube_frame() {
 /// them, a known failure.
 void expect_cube(const Frame& frame, const Visibility& visibility, std::size_t known_wrong = 0) {
     const ComparisonMask mask = comparison_mask(context(), frame);
+    const EyeRays rays(frame);
     const Image& texel_m = visibility.texel_size_m();
     const double reach_texels = visibility.filter_radius_texels() + 1.5;
     // The sun is 45° high: a texel across its rays is √2 long on the ground.
@@ -113,7 +127,7 @@ void expect_cube(const Frame& frame, const Visibility& visibility, std::size_t k
             if (!texel_m.empty() && pixel_m > 0.0) {
                 radius_px += stretch * reach_texels * texel_m.at(x, y) / pixel_m;
             }
-            const auto expected = value_around(frame, x + 0.5, y + 0.5, radius_px);
+            const auto expected = value_around(rays, x + 0.5, y + 0.5, radius_px);
             if (!expected) continue;
             ++(*expected > 0.5 ? judged_lit : judged_shadow);
             const float value = visibility.image().at(x, y);
