@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -102,6 +103,16 @@ struct SceneData {
     std::vector<std::string> warnings;  ///< faults that the loader tolerated, a line each
 };
 
+/// Where an instance goes.
+struct InstancePose {
+    std::uint32_t instance = 0;   ///< index into Scene::instances()
+    Mat4 world_from_local{1.0f};  ///< affine; may mirror
+};
+
+/// What tells scenes apart: a key for caches that must not outlive what they are made from.
+using SceneKey = std::weak_ptr<const void>;
+bool same(const SceneKey& a, const SceneKey& b);
+
 /// An immutable scene, cheap to copy: copies share their contents, and what a Context keeps for one
 /// (vertex buffers, acceleration structures) serves them all.
 class Scene {
@@ -112,27 +123,68 @@ public:
     /// length, or a number is not finite.
     explicit Scene(SceneData data);
 
-    const std::vector<Mesh>& meshes() const { return data_->meshes; }
-    const std::vector<Material>& materials() const { return data_->materials; }
-    const std::vector<Texture>& textures() const { return data_->textures; }
-    const std::vector<Instance>& instances() const { return data_->instances; }
-    const std::vector<Camera>& cameras() const { return data_->cameras; }
-    const std::vector<Light>& lights() const { return data_->lights; }
-    const std::vector<std::string>& warnings() const { return data_->warnings; }
-    const std::string& source() const { return data_->source; }
-    DVec3 origin_offset_m() const { return data_->origin_offset_m; }
-    const SceneData& data() const { return *data_; }
+    /// This scene with some instances elsewhere; of two poses of one instance the last counts. No
+    /// triangle is touched: meshes, materials and textures are shared, on the device as well, and
+    /// a frame of such a scene uploads matrices alone. What is made of triangles in the world is
+    /// made anew for each: the ray tracer's tree, and so the truth and techniques on the host, and
+    /// bakes. Depth maps with `reuse_maps` keep the casters that have never moved; that needs maps
+    /// which rest, as those of lamps or of `fit` stable.
+    /// Throws Error{input} naming the pose when its index is out of range, or its matrix not finite
+    /// or not affine.
+    ///
+    ///     auto pssm = make_technique(context, "pssm", {{"fit", "stable"}, {"reuse_maps", true}});
+    ///     Visibility visibility = pssm->render(frame);
+    ///     for (const std::vector<InstancePose>& poses : animation) {
+    ///         frame.scene = scene.moved(poses);
+    ///         pssm->render(frame, visibility);
+    ///     }
+    Scene moved(std::span<const InstancePose> poses) const;
 
-    Box3 bounds() const { return bounds_; }  ///< of all instances; empty without triangles
-    std::uint64_t triangle_count() const { return triangle_count_; }  ///< instances counted
+    /// Instances that moved() has placed elsewhere on the way from the scene that was made of its
+    /// data to this one, rising. All others are where they were.
+    const std::vector<std::uint32_t>& moving() const { return placement_->moving; }
 
-    /// The shared contents: a key for caches that must not outlive them.
-    std::weak_ptr<const SceneData> identity() const { return data_; }
+    const std::vector<Mesh>& meshes() const { return contents_->data.meshes; }
+    const std::vector<Material>& materials() const { return contents_->data.materials; }
+    const std::vector<Texture>& textures() const { return contents_->data.textures; }
+    const std::vector<Instance>& instances() const { return placement_->instances; }
+    const std::vector<Camera>& cameras() const { return contents_->data.cameras; }
+    const std::vector<Light>& lights() const { return contents_->data.lights; }
+    const std::vector<std::string>& warnings() const { return contents_->data.warnings; }
+    const std::string& source() const { return contents_->data.source; }
+    DVec3 origin_offset_m() const { return contents_->data.origin_offset_m; }
+    /// A copy of all of it, with the instances where they are.
+    SceneData data() const;
+
+    /// Of all instances, of those that have moved the boxes around their meshes' boxes; empty
+    /// without triangles.
+    Box3 bounds() const { return placement_->bounds; }
+    /// Around the triangles of a mesh, in its space; empty without any.
+    const Box3& mesh_bounds(std::uint32_t mesh) const { return contents_->mesh_bounds[mesh]; }
+    std::uint64_t triangle_count() const {  ///< instances counted
+        return contents_->triangle_count;
+    }
+
+    /// All of it: copies have the same, moved() gives another.
+    SceneKey identity() const { return placement_; }
+    /// All but where the instances are: moved() keeps it.
+    SceneKey contents_identity() const { return contents_; }
 
 private:
-    std::shared_ptr<const SceneData> data_;
-    Box3 bounds_;
-    std::uint64_t triangle_count_ = 0;
+    struct Contents {
+        SceneData data;  ///< without its instances
+        std::vector<Box3> mesh_bounds;
+        std::uint64_t triangle_count = 0;
+    };
+    struct Placement {
+        std::vector<Instance> instances;
+        std::vector<Box3> instance_bounds;
+        std::vector<std::uint32_t> moving;
+        Box3 bounds;
+    };
+
+    std::shared_ptr<const Contents> contents_;
+    std::shared_ptr<const Placement> placement_;
 };
 
 enum class UpAxis { y, z };

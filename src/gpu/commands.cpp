@@ -289,12 +289,13 @@ void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t by
     vkCmdCopyBuffer(handle_, source.handle(), target.handle(), 1, &region);
 }
 
-void Commands::update(Buffer& target, std::span<const std::byte> bytes, Use next) {
+void Commands::update(Buffer& target, std::span<const std::byte> bytes, Use next,
+                      std::uint64_t first_byte) {
     constexpr std::size_t kMostAtOnce_bytes = 65536;  // of vkCmdUpdateBuffer
     use(target, Use::copy_target);
     for (std::size_t at = 0; at < bytes.size(); at += kMostAtOnce_bytes) {
         const std::size_t count = std::min(kMostAtOnce_bytes, bytes.size() - at);
-        vkCmdUpdateBuffer(handle_, target.handle(), at, count, &bytes[at]);
+        vkCmdUpdateBuffer(handle_, target.handle(), first_byte + at, count, &bytes[at]);
     }
     use(target, next);
 }
@@ -334,6 +335,22 @@ void Commands::copy(const Image& source, LayerPlace from, const Image& target, L
                              .extent = {size.width, size.height, 1}};
     vkCmdCopyImage(handle_, source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(),
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+}
+
+void Commands::copy(const Image& source, const Image& target, std::span<const LayerArea> areas) {
+    std::vector<VkImageCopy> regions;
+    for (const auto& [layer, area] : areas) {
+        const VkOffset3D place{area.offset.x, area.offset.y, 0};
+        regions.push_back({.srcSubresource = {copied_aspect(source), 0, layer, 1},
+                           .srcOffset = place,
+                           .dstSubresource = {copied_aspect(target), 0, layer, 1},
+                           .dstOffset = place,
+                           .extent = {area.extent.width, area.extent.height, 1}});
+    }
+    if (regions.empty()) return;
+    vkCmdCopyImage(handle_, source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(),
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, static_cast<std::uint32_t>(regions.size()),
+                   regions.data());
 }
 
 Submission::Submission(const Device& device) : device_(device), timer_(device) {

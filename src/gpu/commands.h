@@ -36,6 +36,12 @@ struct LayerPlace {
     VkOffset2D offset{};
 };
 
+/// A rectangle of a layer of an image, in texels.
+struct LayerArea {
+    unsigned layer = 0;
+    VkRect2D area{};
+};
+
 /// Where drawing goes, and what is there before.
 struct Targets {
     std::vector<const Image*> colors;
@@ -111,8 +117,10 @@ public:
     /// Enough groups of group_size x group_size for `size`.
     void dispatch(Extent size, unsigned group_size);
 
-    /// Bytes, a multiple of 4, taken into the command buffer; then ready for `next`.
-    void update(Buffer& target, std::span<const std::byte> bytes, Use next = Use::storage_read);
+    /// Bytes, a multiple of 4, taken into the command buffer, to a place of the target that is one
+    /// as well; then ready for `next`.
+    void update(Buffer& target, std::span<const std::byte> bytes, Use next = Use::storage_read,
+                std::uint64_t first_byte = 0);
     template <typename T>
     void update(Buffer& target, const T& value) {
         update(target, std::as_bytes(std::span(&value, 1)));
@@ -124,6 +132,8 @@ public:
     /// A rectangle from one layer to another; of two images, or not overlapping.
     void copy(const Image& source, LayerPlace from, const Image& target, LayerPlace to,
               Extent size);
+    /// Rectangles that do not overlap, to the same places of another image.
+    void copy(const Image& source, const Image& target, std::span<const LayerArea> areas);
 
 private:
     const Device* device_;

@@ -2,12 +2,15 @@
 
 #include "base/parallel.h"
 #include "raster/texture_upload.h"
+#include "scene/bounds.h"
 
 #include <glm/matrix.hpp>
 #include <glm/packing.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -37,17 +40,11 @@ std::vector<MeshRange> mesh_ranges(const Scene& scene) {
     return ranges;
 }
 
-/// Of a box that holds the instance.
-Box3 placed_bounds(const Instance& instance, const Box3& local) {
-    Box3 bounds;
-    if (local.empty()) return bounds;
-    for (unsigned i = 0; i < 8; ++i) {
-        const Vec3 corner((i & 1) != 0 ? local.max.x : local.min.x,
-                          (i & 2) != 0 ? local.max.y : local.min.y,
-                          (i & 4) != 0 ? local.max.z : local.min.z);
-        bounds.include(Vec3(instance.world_from_local * Vec4(corner, 1.0f)));
-    }
-    return bounds;
+/// Most that a metre of an instance's mesh can be in the world.
+float scale_of(const Instance& instance) {
+    const glm::mat3 linear(instance.world_from_local);
+    return std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) +
+                     glm::dot(linear[2], linear[2]));
 }
 
 bool mirrors(const Instance& instance) {
@@ -67,7 +64,9 @@ GpuScene::GpuScene(const gpu::Device& device, const Scene& scene, Progress* prog
     make_casters(progress);
     upload_meshes(device);
     upload_materials(device);
-    place_instances(device);
+    place_instances();
+    instances_ = storage(device, placed_);
+    slots_ = storage(device, slot_of_);
 }
 
 void GpuScene::make_casters(Progress* progress) {
@@ -128,7 +127,12 @@ void GpuScene::upload_materials(const gpu::Device& device) {
     samplers_.push_back(texture_sampler(device, white));
 }
 
-void GpuScene::place_instances(const gpu::Device& device) {
+void GpuScene::place_instances() {
+    draws_.clear();
+    parts_.clear();
+    part_bounds_.clear();
+    placed_.clear();
+    first_part_.clear();
     const std::vector<MeshRange> ranges = mesh_ranges(scene_);
     const std::vector<Instance>& instances = scene_.instances();
     const auto key = [&](std::uint32_t i) {
@@ -142,18 +146,18 @@ void GpuScene::place_instances(const gpu::Device& device) {
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
 
-    std::vector<shared::SceneInstance> placed;
-    std::vector<std::uint32_t> slots(instances.size());
+    slot_of_.resize(instances.size());
     for (const std::uint32_t i : order_) {
         const Instance& instance = instances[i];
         const Mesh& mesh = scene_.meshes()[instance.mesh];
         const MeshRange range = ranges[instance.mesh];
-        const auto slot = static_cast<std::uint32_t>(placed.size());
-        slots[i] = slot;
-        placed.push_back({glm::mat4x3(instance.world_from_local), i, range.first_index,
-                          range.first_vertex, mesh.material});
+        const auto slot = static_cast<std::uint32_t>(placed_.size());
+        slot_of_[i] = slot;
+        first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
+        placed_.push_back({glm::mat4x3(instance.world_from_local), i, range.first_index,
+                           range.first_vertex, mesh.material});
         if (mesh.triangles.empty()) continue;
-        if (slot == 0 || draws_.empty() || key(i) != key(placed[slot - 1].instance)) {
+        if (slot == 0 || draws_.empty() || key(i) != key(placed_[slot - 1].instance)) {
             const Material& material = scene_.materials()[mesh.material];
             draws_.push_back({.mesh = instance.mesh,
                               .material = mesh.material,
@@ -174,18 +178,50 @@ void GpuScene::place_instances(const gpu::Device& device) {
         draws_.back().part_count =
             static_cast<std::uint32_t>(parts_.size()) - draws_.back().first_part;
     }
-    instances_ = storage(device, placed);
-    slots_ = storage(device, slots);
 }
 
 void GpuScene::add_parts(const Instance& instance, std::uint32_t slot, std::uint32_t first_index) {
     const std::vector<MeshCluster>& clusters = casters_[instance.mesh].clusters;
-    const glm::mat3 linear(instance.world_from_local);
-    const float scale = std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) +
-                                  glm::dot(linear[2], linear[2]));
     for (std::uint32_t i = 0; i < clusters.size(); ++i) {
-        parts_.push_back({slot, first_index, i, scale});
-        part_bounds_.push_back(placed_bounds(instance, clusters[i].bounds));
+        parts_.push_back({slot, first_index, i, scale_of(instance)});
+        part_bounds_.push_back(scene::placed_bounds(instance.world_from_local, clusters[i].bounds));
+    }
+}
+
+void GpuScene::place(gpu::Commands& commands, const Scene& scene) {
+    assert(same(scene.contents_identity(), scene_.contents_identity()));
+    const Scene before = std::exchange(scene_, scene);
+    std::vector<std::uint32_t> apart;  // where instances can differ
+    std::ranges::set_union(before.moving(), scene.moving(), std::back_inserter(apart));
+    bool keeps_order = true;
+    std::uint32_t first = static_cast<std::uint32_t>(placed_.size());
+    std::uint32_t end = 0;
+    for (const std::uint32_t i : apart) {
+        const Instance& instance = scene.instances()[i];
+        if (instance.world_from_local == before.instances()[i].world_from_local) continue;
+        keeps_order = keeps_order && mirrors(instance) == mirrors(before.instances()[i]);
+        move_instance(instance, slot_of_[i]);
+        first = std::min(first, slot_of_[i]);
+        end = std::max(end, slot_of_[i] + 1);
+    }
+    if (!keeps_order) {
+        place_instances();
+        commands.update(slots_, std::as_bytes(std::span(slot_of_)), gpu::Use::vertex_read);
+        first = 0;
+        end = static_cast<std::uint32_t>(placed_.size());
+    }
+    if (first >= end) return;
+    commands.update(instances_, std::as_bytes(std::span(placed_).subspan(first, end - first)),
+                    gpu::Use::vertex_read, first * sizeof(shared::SceneInstance));
+}
+
+void GpuScene::move_instance(const Instance& instance, std::uint32_t slot) {
+    placed_[slot].world_from_local = glm::mat4x3(instance.world_from_local);
+    const std::vector<MeshCluster>& clusters = casters_[instance.mesh].clusters;
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+        parts_[first_part_[slot] + i].scale = scale_of(instance);
+        part_bounds_[first_part_[slot] + i] =
+            scene::placed_bounds(instance.world_from_local, clusters[i].bounds);
     }
 }
 

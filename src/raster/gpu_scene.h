@@ -39,6 +39,10 @@ public:
     /// Throws Error{cancelled}.
     GpuScene(const gpu::Device& device, const Scene& scene, Progress* progress = nullptr);
 
+    /// Places the instances as another scene of the same contents does: uploads the matrices of
+    /// what has moved.
+    void place(gpu::Commands& commands, const Scene& scene);
+
     const Scene& scene() const { return scene_; }
     const std::vector<Draw>& draws() const { return draws_; }
     /// The index into Scene::instances() of a slot of the instance buffer.
@@ -64,7 +68,8 @@ public:
     std::uint64_t memory_bytes() const;
 
 private:
-    void place_instances(const gpu::Device& device);
+    void place_instances();
+    void move_instance(const Instance& instance, std::uint32_t slot);
     void add_parts(const Instance& instance, std::uint32_t slot, std::uint32_t first_index);
     void make_casters(Progress* progress);
     void upload_meshes(const gpu::Device& device);
@@ -72,7 +77,10 @@ private:
 
     Scene scene_;
     std::vector<Draw> draws_;
-    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> order_;               // by slot
+    std::vector<std::uint32_t> slot_of_;             // by instance
+    std::vector<shared::SceneInstance> placed_;      // by slot
+    std::vector<std::uint32_t> first_part_;          // by slot
     std::vector<CasterMesh> casters_;                // by mesh, without their triangles
     std::vector<std::uint32_t> first_caster_index_;  // by mesh
     std::vector<CasterPart> parts_;

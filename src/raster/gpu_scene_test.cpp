@@ -1,16 +1,52 @@
 #include "raster/gpu_scene.h"
 
-#include "gpu/device_test.h"
+#include "raster/drawn_test.h"
 #include "raster/small_scene_test.h"
 
 #include <glm/ext/matrix_transform.hpp>
 
 #include <set>
+#include <vector>
 
 namespace gnomon::raster {
 namespace {
 
-class GpuSceneTest : public gpu::DeviceTest {};
+class GpuSceneTest : public gpu::DeviceTest {
+protected:
+    static Drawn draw(const GpuScene& scene) {
+        constexpr Extent kSize{64, 48};
+        ReceiverPass pass(device());
+        Receivers receivers;
+        gpu::Submission submission(device());
+        gpu::Commands commands = submission.begin();
+        pass.record(commands, scene, look_at({2, 3, 9}, {0, 0, 0}), kSize, false, receivers);
+        submission.submit_and_wait();
+        return read_back(device(), receivers);
+    }
+
+    static void expect_alike(const GpuScene& placed, const GpuScene& made) {
+        ASSERT_EQ(placed.draws().size(), made.draws().size());
+        for (std::size_t i = 0; i < made.draws().size(); ++i) {
+            EXPECT_EQ(placed.draws()[i].mesh, made.draws()[i].mesh);
+            EXPECT_EQ(placed.draws()[i].first_slot, made.draws()[i].first_slot);
+            EXPECT_EQ(placed.draws()[i].slot_count, made.draws()[i].slot_count);
+            EXPECT_EQ(placed.draws()[i].part_count, made.draws()[i].part_count);
+            EXPECT_EQ(placed.draws()[i].mirrored, made.draws()[i].mirrored);
+        }
+        ASSERT_EQ(placed.parts().size(), made.parts().size());
+        for (std::size_t i = 0; i < made.parts().size(); ++i) {
+            EXPECT_EQ(placed.parts()[i].slot, made.parts()[i].slot);
+            EXPECT_EQ(placed.parts()[i].scale, made.parts()[i].scale);
+            EXPECT_EQ(placed.part_bounds_ws()[i].min, made.part_bounds_ws()[i].min);
+            EXPECT_EQ(placed.part_bounds_ws()[i].max, made.part_bounds_ws()[i].max);
+        }
+        const Drawn a = draw(placed);
+        const Drawn b = draw(made);
+        EXPECT_EQ(a.ids, b.ids);
+        EXPECT_EQ(a.depths, b.depths);
+        EXPECT_EQ(a.packed_normals, b.packed_normals);
+    }
+};
 
 Instance placed(std::uint32_t mesh, bool mirrored = false) {
     Instance instance;
@@ -61,6 +97,29 @@ TEST_F(GpuSceneTest, DrawsTogetherOnlyWhatIsAlike) {
     }
     // Meshes 0 and 4; 1 and 2 as they are and mirrored.
     EXPECT_EQ(gpu_scene.draws().size(), 6u);
+}
+
+// Turned over, instances change places: they are drawn with those that are wound like them.
+TEST_F(GpuSceneTest, PlacedElsewhereIsAsMadeThere) {
+    const Scene scene = mixed_scene();
+    GpuScene gpu_scene(device(), scene);
+    const Mat4 aside = glm::translate(Mat4(1.0f), Vec3(3, 0, 1));
+    const Mat4 turned_over = glm::scale(aside, {2, -1, 1});
+    const std::vector<std::vector<InstancePose>> steps{
+        {{7, aside}, {0, glm::scale(aside, Vec3(2))}},
+        {{5, turned_over}, {3, aside}},
+        {{5, aside}, {8, turned_over}}};
+    Scene moved = scene;
+    for (const std::vector<InstancePose>& poses : steps) {
+        moved = moved.moved(poses);
+        for (const Scene& next : {moved, scene.moved(poses), scene, moved}) {
+            gpu::Submission submission(device());
+            gpu::Commands commands = submission.begin();
+            gpu_scene.place(commands, next);
+            submission.submit_and_wait();
+            expect_alike(gpu_scene, GpuScene(device(), Scene(next.data())));
+        }
+    }
 }
 
 TEST_F(GpuSceneTest, MayBeEmpty) {

@@ -165,22 +165,22 @@ float roughness(float shininess) {
 /// Builds the JSON and the data beside it.
 class GlbWriter {
 public:
-    explicit GlbWriter(const SceneData& scene) : scene_(scene) {
+    explicit GlbWriter(const Scene& scene) : scene_(scene) {
         json_["asset"] = {{"version", "2.0"}, {"generator", "gnomon"}};
         json_["scene"] = 0;
         json_["scenes"] = Json::array({{{"nodes", Json::array()}}});
-        if (!scene_.source.empty()) json_["scenes"][0]["name"] = scene_.source;
+        if (!scene_.source().empty()) json_["scenes"][0]["name"] = scene_.source();
     }
 
     std::string bytes() && {
-        for (const Texture& texture : scene_.textures)
+        for (const Texture& texture : scene_.textures())
             add_texture(texture);
-        for (const Material& material : scene_.materials)
+        for (const Material& material : scene_.materials())
             add_material(material);
         add_instances();
-        for (const Camera& camera : scene_.cameras)
+        for (const Camera& camera : scene_.cameras())
             add_camera(camera);
-        for (const Light& light : scene_.lights)
+        for (const Light& light : scene_.lights())
             add_light(light);
         add_nodes();
         if (!extensions_.empty()) json_["extensionsUsed"] = extensions_;
@@ -256,7 +256,7 @@ private:
     const Json& primitive(std::uint32_t index) {
         Json& json = primitives_[index];
         if (!json.is_null()) return json;
-        const Mesh& mesh = scene_.meshes[index];
+        const Mesh& mesh = scene_.meshes()[index];
         Box3 bounds;
         for (const Vec3 p : mesh.positions)
             bounds.include(p);
@@ -287,7 +287,7 @@ private:
     std::size_t gltf_mesh(const std::vector<std::uint32_t>& parts) {
         const auto [entry, is_new] = gltf_meshes_.try_emplace(parts, gltf_meshes_.size());
         if (is_new) {
-            Json json = {{"name", scene_.meshes[parts.front()].name},
+            Json json = {{"name", scene_.meshes()[parts.front()].name},
                          {"primitives", Json::array()}};
             for (const std::uint32_t part : parts)
                 json["primitives"].push_back(primitive(part));
@@ -298,7 +298,7 @@ private:
 
     /// Neighbouring instances of one object in one place become one node, as they came from one.
     void add_instances() {
-        const std::vector<Instance>& all = scene_.instances;
+        const std::vector<Instance>& all = scene_.instances();
         for (std::size_t first = 0; first < all.size();) {
             std::size_t last = first;
             std::vector<std::uint32_t> parts;
@@ -306,7 +306,7 @@ private:
                    all[last].name == all[first].name &&
                    all[last].world_from_local == all[first].world_from_local) {
                 // glTF has no empty meshes.
-                if (!scene_.meshes[all[last].mesh].triangles.empty()) {
+                if (!scene_.meshes()[all[last].mesh].triangles.empty()) {
                     parts.push_back(all[last].mesh);
                 }
                 ++last;
@@ -359,10 +359,10 @@ private:
         Json children = Json::array();
         for (Json& node : nodes_)
             children.push_back(add("nodes", std::move(node)));
-        if (scene_.origin_offset_m == DVec3(0.0)) {
+        if (scene_.origin_offset_m() == DVec3(0.0)) {
             roots = std::move(children);
         } else if (!children.empty()) {
-            const DVec3 offset = scene_.origin_offset_m;
+            const DVec3 offset = scene_.origin_offset_m();
             roots.push_back(add("nodes", {{"name", "origin"},
                                           {"translation", {offset.x, offset.y, offset.z}},
                                           {"children", std::move(children)}}));
@@ -408,7 +408,7 @@ private:
         return file;
     }
 
-    const SceneData& scene_;
+    const Scene& scene_;
     Json json_;
     std::string data_;
     std::vector<Json> nodes_;
@@ -420,7 +420,7 @@ private:
 }  // namespace
 
 void write_glb(const std::filesystem::path& path, const Scene& scene) {
-    write_file(path, GlbWriter(scene.data()).bytes());
+    write_file(path, GlbWriter(scene).bytes());
 }
 
 }  // namespace gnomon

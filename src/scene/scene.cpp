@@ -1,9 +1,13 @@
 #include <gnomon/scene.h>
 
 #include "base/check.h"
+#include "scene/bounds.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
+#include <utility>
 
 namespace gnomon {
 
@@ -103,24 +107,113 @@ Box3 instance_bounds(const SceneData& data, const Instance& instance) {
     return bounds;
 }
 
+Box3 mesh_bounds_of(const Mesh& mesh) {
+    Box3 bounds;
+    for (const UVec3 t : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner)
+            bounds.include(mesh.positions[t[corner]]);
+    }
+    return bounds;
+}
+
+void require_in_range(const Instance& instance, const Box3& bounds) {
+    if (!bounds.empty() && (!finite(bounds.min) || !finite(bounds.max))) {
+        fail_input("instance \"{}\": its transform takes positions beyond float's range",
+                   instance.name);
+    }
+}
+
+Box3 union_of(const std::vector<Box3>& boxes) {
+    Box3 all;
+    for (const Box3& box : boxes) {
+        if (box.empty()) continue;
+        all.include(box.min);
+        all.include(box.max);
+    }
+    return all;
+}
+
+void validate_pose(const InstancePose& pose, std::size_t instances) {
+    if (pose.instance >= instances) {
+        fail_input("moved: instance {} of {}", pose.instance, instances);
+    }
+    const Mat4& m = pose.world_from_local;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (std::isfinite(m[column][row])) continue;
+            fail_input(
+                "moved: world_from_local of instance {} has {} in row {}, column {}; it "
+                "must be finite",
+                pose.instance, m[column][row], row, column);
+        }
+    }
+    if (m[0].w != 0.0f || m[1].w != 0.0f || m[2].w != 0.0f || m[3].w != 1.0f) {
+        fail_input(
+            "moved: world_from_local of instance {} has the last row {} {} {} {}; an affine "
+            "matrix has 0 0 0 1",
+            pose.instance, m[0].w, m[1].w, m[2].w, m[3].w);
+    }
+}
+
 }  // namespace
 
-Scene::Scene() : data_(std::make_shared<const SceneData>()) {}
+bool same(const SceneKey& a, const SceneKey& b) {
+    return !a.owner_before(b) && !b.owner_before(a);
+}
+
+Scene::Scene()
+    : contents_(std::make_shared<const Contents>()),
+      placement_(std::make_shared<const Placement>()) {}
 
 Scene::Scene(SceneData data) {
     validate(data);
-    data_ = std::make_shared<const SceneData>(std::move(data));
-    for (const Instance& instance : data_->instances) {
-        const Box3 box = instance_bounds(*data_, instance);
-        if (box.empty()) continue;
-        if (!finite(box.min) || !finite(box.max)) {
-            fail_input("instance \"{}\": its transform takes positions beyond float's range",
-                       instance.name);
-        }
-        bounds_.include(box.min);
-        bounds_.include(box.max);
-        triangle_count_ += data_->meshes[instance.mesh].triangles.size();
+    auto contents = std::make_shared<Contents>();
+    auto placement = std::make_shared<Placement>();
+    for (const Mesh& mesh : data.meshes)
+        contents->mesh_bounds.push_back(mesh_bounds_of(mesh));
+    for (const Instance& instance : data.instances) {
+        const Box3& box = placement->instance_bounds.emplace_back(instance_bounds(data, instance));
+        require_in_range(instance, box);
+        contents->triangle_count += data.meshes[instance.mesh].triangles.size();
     }
+    placement->bounds = union_of(placement->instance_bounds);
+    placement->instances = std::move(data.instances);
+    data.instances = {};
+    contents->data = std::move(data);
+    contents_ = std::move(contents);
+    placement_ = std::move(placement);
+}
+
+Scene Scene::moved(std::span<const InstancePose> poses) const {
+    for (const InstancePose& pose : poses)
+        validate_pose(pose, instances().size());
+    auto placement = std::make_shared<Placement>(*placement_);
+    std::vector<std::uint32_t> moving;
+    for (const InstancePose& pose : poses) {
+        Instance& instance = placement->instances[pose.instance];
+        if (instance.world_from_local == pose.world_from_local) continue;
+        instance.world_from_local = pose.world_from_local;
+        Box3& bounds = placement->instance_bounds[pose.instance];
+        bounds = scene::placed_bounds(instance.world_from_local, mesh_bounds(instance.mesh));
+        require_in_range(instance, bounds);
+        moving.push_back(pose.instance);
+    }
+    if (moving.empty()) return *this;
+    std::ranges::sort(moving);
+    placement->moving.clear();
+    std::ranges::set_union(moving, this->moving(), std::back_inserter(placement->moving));
+    const auto repeated = std::ranges::unique(placement->moving);
+    placement->moving.erase(repeated.begin(), repeated.end());
+    placement->bounds = union_of(placement->instance_bounds);
+    Scene result = *this;
+    result.placement_ = std::move(placement);
+    return result;
+}
+
+SceneData Scene::data() const {
+    SceneData data = contents_->data;
+    data.instances = instances();
+    return data;
 }
 
 }  // namespace gnomon

@@ -14,10 +14,6 @@ double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-bool same(const std::weak_ptr<const SceneData>& a, const std::weak_ptr<const SceneData>& b) {
-    return !a.owner_before(b) && !b.owner_before(a);
-}
-
 }  // namespace
 
 void TechniqueBase::prepare(const Scene& scene, Progress& progress) {

@@ -34,7 +34,7 @@ protected:
 private:
     Context::Impl& context_;
     const TechniqueInfo& info_;
-    std::weak_ptr<const SceneData> prepared_;
+    SceneKey prepared_;
     bool is_prepared_ = false;
     RenderStats stats_;
 };

@@ -7,11 +7,6 @@ namespace gnomon {
 
 namespace {
 
-bool same_scene(const std::weak_ptr<const SceneData>& a, const Scene& scene) {
-    const std::weak_ptr<const SceneData> b = scene.identity();
-    return !a.owner_before(b) && !b.owner_before(a);
-}
-
 bool same_camera(const Camera& a, const Camera& b) {
     return a.view_from_world == b.view_from_world && a.fov_y_rad == b.fov_y_rad &&
            a.near_m == b.near_m && a.ortho_height_m == b.ortho_height_m &&
@@ -48,9 +43,14 @@ Context::Impl::Impl(const ContextOptions& options) : device_(options), submissio
 }
 
 const raster::GpuScene& Context::Impl::gpu_scene(const Scene& scene, Progress* progress) {
-    if (!gpu_scene_ || !same_scene(gpu_scene_->scene().identity(), scene)) {
+    if (!gpu_scene_ || !same(gpu_scene_->scene().contents_identity(), scene.contents_identity())) {
         gpu_scene_.reset();  // first, so that two scenes never are in device memory at once
         gpu_scene_ = std::make_unique<raster::GpuScene>(device_, scene, progress);
+    } else if (!same(gpu_scene_->scene().identity(), scene.identity())) {
+        if (!placing_) placing_.emplace(device_);
+        gpu::Commands commands = placing_->begin();
+        gpu_scene_->place(commands, scene);
+        placing_->submit_and_wait();
     }
     return *gpu_scene_;
 }
@@ -58,16 +58,22 @@ const raster::GpuScene& Context::Impl::gpu_scene(const Scene& scene, Progress* p
 const trace::Tracer& Context::Impl::tracer(const Scene& scene, bool ignore_alpha,
                                            Progress& progress) {
     for (const SceneTracer& kept : tracers_) {
-        if (kept.ignore_alpha == ignore_alpha && same_scene(kept.scene, scene)) return kept.tracer;
+        if (kept.ignore_alpha == ignore_alpha && same(kept.scene, scene.identity()))
+            return kept.tracer;
     }
+    // Scenes whose instances move come one after the other: none comes back.
+    std::erase_if(tracers_, [&](const SceneTracer& kept) {
+        return same(kept.contents, scene.contents_identity()) &&
+               !same(kept.scene, scene.identity());
+    });
     if (tracers_.size() == kKeptTracers) tracers_.erase(tracers_.begin());
-    tracers_.push_back(
-        {scene.identity(), ignore_alpha, trace::Tracer(scene, ignore_alpha, progress)});
+    tracers_.push_back({scene.identity(), scene.contents_identity(), ignore_alpha,
+                        trace::Tracer(scene, ignore_alpha, progress)});
     return tracers_.back().tracer;
 }
 
 std::shared_ptr<FrameReceivers> Context::Impl::receivers(const Frame& frame) {
-    if (receivers_ && same_scene(receivers_->scene, frame.scene) &&
+    if (receivers_ && same(receivers_->scene, frame.scene.identity()) &&
         receivers_->ignore_alpha == frame.ignore_alpha && receivers_->device.size == frame.size &&
         same_camera(receivers_->device.camera, frame.camera)) {
         return receivers_;

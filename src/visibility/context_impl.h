@@ -16,7 +16,7 @@ namespace gnomon {
 
 /// The receivers of a frame on the device, and as points on the host once these are asked for.
 struct FrameReceivers {
-    std::weak_ptr<const SceneData> scene;
+    SceneKey scene;
     bool ignore_alpha = false;
     raster::Receivers device;
     std::vector<trace::Receiver> points;  ///< row-major, top row first; empty until asked for
@@ -46,7 +46,7 @@ public:
 
 private:
     struct SceneTracer {
-        std::weak_ptr<const SceneData> scene;
+        SceneKey scene, contents;
         bool ignore_alpha = false;
         trace::Tracer tracer;
     };
@@ -55,6 +55,7 @@ private:
     std::optional<tbb::global_control> threads_;
     gpu::Device device_;
     gpu::Submission submission_;
+    std::optional<gpu::Submission> placing_;  // apart, as a scene may be asked for while recording
     std::optional<raster::ReceiverPass> receiver_pass_;
     std::optional<raster::SurfacePass> surface_pass_;
     std::unique_ptr<raster::GpuScene> gpu_scene_;

@@ -117,9 +117,8 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
 }
 
 bool DepthMap::holds(const raster::GpuScene& scene, const CasterOptions& options) const {
-    const std::weak_ptr<const SceneData> identity = scene.scene().identity();
-    return options.ignore_alpha == held_ignores_alpha_ && !held_scene_.owner_before(identity) &&
-           !identity.owner_before(held_scene_);
+    return options.ignore_alpha == held_ignores_alpha_ &&
+           same(held_scene_, scene.scene().identity());
 }
 
 void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {

@@ -91,7 +91,7 @@ private:
     std::vector<Move> moves_;
     std::uint64_t texels_ = 0;
     std::vector<std::optional<Held>> held_;  // by layer
-    std::weak_ptr<const SceneData> held_scene_;
+    SceneKey held_scene_;
     bool held_ignores_alpha_ = false;
     gpu::Buffer instances_;
     gpu::Buffer commands_;  // of all passes, one after the other

@@ -35,8 +35,12 @@ public:
         : TechniqueBase(context, auto_info()), handle_(context), options_(options) {}
 
 private:
-    // What is chosen depends on the frame, and prepares itself with the first.
-    void prepare_scene(const Scene&, Progress&) override { chosen_.reset(); }
+    // What is chosen depends on the frame, and prepares itself with the first, and again where
+    // instances have moved.
+    void prepare_scene(const Scene& scene, Progress&) override {
+        if (!same(chosen_for_, scene.contents_identity())) chosen_.reset();
+        chosen_for_ = scene.contents_identity();
+    }
 
     void render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
                       Progress& progress) override {
@@ -69,6 +73,7 @@ private:
     Context& handle_;
     Options options_;
     std::unique_ptr<Technique> chosen_;
+    SceneKey chosen_for_;  // contents
     std::string name_;
     Params params_;
 };

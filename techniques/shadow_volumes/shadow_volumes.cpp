@@ -119,6 +119,21 @@ public:
 private:
     void prepare_scene(const Scene& scene, Progress& progress) override {
         GpuTechnique::prepare_scene(scene, progress);
+        find_edges(scene, progress);
+        sources_.assign(scene.instances().size(), {});
+        const raster::GpuScene& gpu_scene = context().gpu_scene(scene);
+        for (const raster::Draw& draw : gpu_scene.draws()) {
+            for (std::uint32_t i = 0; i < draw.slot_count; ++i) {
+                const std::uint32_t slot = draw.first_slot + i;
+                sources_[gpu_scene.instance_at(slot)] = {slot, draw.first_vertex};
+            }
+        }
+    }
+
+    // Those of meshes: they stay when instances move.
+    void find_edges(const Scene& scene, Progress& progress) {
+        if (same(adjacencies_of_, scene.contents_identity())) return;
+        adjacencies_of_ = {};
         adjacencies_.assign(scene.meshes().size(), {});
         parallel_for(
             adjacencies_.size(), 1,
@@ -128,14 +143,7 @@ private:
                 }
             },
             "finding edges", &progress);
-        sources_.assign(scene.instances().size(), {});
-        const raster::GpuScene& gpu_scene = context().gpu_scene(scene);
-        for (const raster::Draw& draw : gpu_scene.draws()) {
-            for (std::uint32_t i = 0; i < draw.slot_count; ++i) {
-                const std::uint32_t slot = draw.first_slot + i;
-                sources_[gpu_scene.instance_at(slot)] = {slot, draw.first_vertex};
-            }
-        }
+        adjacencies_of_ = scene.contents_identity();
     }
 
     void build_volumes(const Scene& scene, HomogeneousLight light_ws) {
@@ -237,6 +245,7 @@ private:
     gpu::Sampler nearest_;
     gpu::Buffer view_;                    // clip_from_world of the camera
     std::vector<Adjacency> adjacencies_;  // of each mesh
+    SceneKey adjacencies_of_;             // of which contents
     std::vector<VolumeSource> sources_;   // of each instance
     RecordBuffer<VolumeTriangle> caps_;
     std::uint32_t clockwise_caps_ = 0;  // of them, at the end
