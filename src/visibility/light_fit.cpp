@@ -163,6 +163,15 @@ CastersRange casters_range(const glm::dmat4& view, const Box3& bounds) {
     return range;
 }
 
+/// The range widened to steps of about a sixteenth of it: a map can rest while what moves in the
+/// scene changes its bounds a little.
+CastersRange in_steps(CastersRange range) {
+    constexpr double kSteps = 16.0;
+    const double length_m = std::max(range.high_m - range.low_m, kLeastMap_m);
+    const double step_m = std::exp2(std::floor(std::log2(length_m))) / kSteps;
+    return {std::floor(range.low_m / step_m) * step_m, std::ceil(range.high_m / step_m) * step_m};
+}
+
 LightFit parallel_fit(const Footprint& footprint, CastersRange range, unsigned size_texels,
                       float margin_texels) {
     const double used_share = used_texels(size_texels, margin_texels) / size_texels;
@@ -307,7 +316,7 @@ LightFit fit_directional_stable(const DirectionalLight& light, const Camera& cam
     const glm::dvec2 middle(view * DVec4(center, 1.0));
     const glm::dvec2 snapped = glm::floor(middle / moves_by_m + 0.5) * moves_by_m;
     return parallel_fit({view, snapped, {1.0, 0.0}, glm::dvec2(side_m)},
-                        casters_range(view, bounds), size_texels, margin);
+                        in_steps(casters_range(view, bounds)), size_texels, margin);
 }
 
 LightFit fit_image(const glm::dmat4& image_from_world, std::span<const DVec3> receivers_ws,

@@ -126,7 +126,9 @@ double near_light_m(const Box3& bounds) {
     // Of the scene's size: a few roundings of coordinates. Reversed Z keeps precision however near
     // that is.
     constexpr double kNearFraction = 1e-6;
-    return kNearFraction * static_cast<double>(std::max(bounds.diagonal(), 1e-3f));
+    const double near_m = kNearFraction * static_cast<double>(std::max(bounds.diagonal(), 1e-3f));
+    // A power of 2: maps rest while what moves in the scene changes its size a little.
+    return std::exp2(std::floor(std::log2(near_m)));
 }
 
 LightFit fit_view(const LightView& view, const Box3& bounds, unsigned size_texels,
