@@ -104,7 +104,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                                 .multi_draw = options_.multi_draw,
                                 .layered = options_.layered});
     }
-    if (contents_ && is_drawn) {
+    if (contents_ && (is_drawn || !contents_->measures_as(fits))) {
         const gpu::Pass pass(commands, "content");
         contents_->record(commands, map_.image(), fits);
     }

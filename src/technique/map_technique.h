@@ -60,8 +60,8 @@ std::vector<typename ParamTable<Options>::Row> caster_rows() {
         boolean<Options>(
             "reuse_maps", &Options::reuse_maps,
             "what is in a map stays while its light, casters and texels do: nothing is drawn of "
-            "maps that rest, and only what comes into maps that move by whole texels; casters are "
-            "then culled by the map's sides alone"),
+            "maps that rest, only what comes into maps that move by whole texels, and only the "
+            "instances that move; casters are then culled by the map's sides alone"),
         boolean<Options>("multi_draw", &Options::multi_draw,
                          "casters that are drawn alike are drawn by one command"),
         boolean<Options>("layered", &Options::layered,

@@ -65,16 +65,19 @@ void CasterDraws::clear() {
 }
 
 std::vector<CasterDraw> CasterDraws::add(const raster::GpuScene& scene, const MapLayer& layer,
-                                         std::uint32_t index) {
+                                         std::uint32_t index,
+                                         std::span<const std::uint8_t> wanted) {
     const glm::dmat4& from_world = layer.fit.clip_from_world;
     std::vector<CasterDraw> draws;
     for (const raster::Draw& draw : scene.draws()) {
         const Culled culled = culled_by(layer, draw.winding);
         for (std::uint32_t i = draw.first_part; i < draw.first_part + draw.part_count; ++i) {
+            const raster::CasterPart& part = scene.parts()[i];
+            const std::uint32_t placed = scene.instance_at(part.slot);
+            if (!wanted.empty() && wanted[placed] == 0) continue;
             const Box3& bounds_ws = scene.part_bounds_ws()[i];
             if (!layer.casters.holds(bounds_ws)) continue;
-            const raster::CasterPart& part = scene.parts()[i];
-            const Instance& instance = scene.scene().instances()[scene.instance_at(part.slot)];
+            const Instance& instance = scene.scene().instances()[placed];
             const raster::CasterLevel& level =
                 level_for(layer, scene.levels(draw, part), part, bounds_ws);
             add_part(draws,

@@ -5,6 +5,7 @@
 #include "visibility/light_fit.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gnomon {
@@ -47,9 +48,10 @@ struct CasterInstance {
 class CasterDraws {
 public:
     void clear();
-    /// The casters of a layer, as few draws as they make.
+    /// The casters of a layer, as few draws as they make: of all instances, or where `wanted` has
+    /// one number for each of them, of those whose number is not 0.
     std::vector<CasterDraw> add(const raster::GpuScene& scene, const MapLayer& layer,
-                                std::uint32_t index);
+                                std::uint32_t index, std::span<const std::uint8_t> wanted = {});
 
     const std::vector<CasterInstance>& instances() const { return instances_; }
     std::uint64_t triangles() const { return triangles_; }  ///< over all layers

@@ -80,6 +80,9 @@ void ContentMap::record(gpu::Commands& commands, const gpu::Image& depths,
         commands.dispatch(image_.size(), kGroupSize);
     }
     blur_.record(commands, image_);
+    reach_m_.clear();
+    for (const LightFit& fit : fits)
+        reach_m_.push_back(fit.far_m);
 }
 
 void ContentMap::make_image(const gpu::Image& depths) {

@@ -5,7 +5,10 @@
 #include "visibility/map_blur.h"
 #include "visibility/map_lookup.shared.h"
 
+#include <algorithm>
+#include <functional>
 #include <span>
+#include <vector>
 
 namespace gnomon {
 
@@ -39,6 +42,12 @@ public:
     /// contents afterwards.
     void record(gpu::Commands& commands, const gpu::Image& depths, std::span<const LightFit> fits);
 
+    /// Whether the contents, of depths that rest, are in the measure of these fits: distances are
+    /// told in parts of how far the scene reaches, which changes when its instances move.
+    bool measures_as(std::span<const LightFit> fits) const {
+        return std::ranges::equal(reach_m_, fits, {}, {}, &LightFit::far_m);
+    }
+
     const gpu::Image& image() const { return image_; }
     std::uint64_t memory_bytes() const { return image_.memory_bytes() + blur_.memory_bytes(); }
 
@@ -52,6 +61,7 @@ private:
     gpu::Sampler nearest_;
     MapBlur blur_;
     gpu::Image image_;
+    std::vector<double> reach_m_;  // LightFit::far_m of each layer
 };
 
 }  // namespace gnomon

@@ -18,6 +18,10 @@ namespace {
 
 constexpr VkFormat kDepthMapFormat = VK_FORMAT_D32_SFLOAT;
 
+/// Of maps that are reused.
+constexpr VkImageUsageFlags kCopied =
+    VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+
 /// Of a layer that moves, drawn one by one.
 constexpr std::size_t kMostStrips = 2;
 
@@ -93,38 +97,33 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                       std::span<const MapLayer> layers, const CasterOptions& options) {
     make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()), options.reuse);
     make_buffers(scene.parts().size() * layers.size() * (options.reuse ? kMostStrips : 1));
-    if (!options.reuse || !holds(scene, options)) held_.assign(layers.size(), {});
-    held_scene_ = scene.scene().identity();
-    held_ignores_alpha_ = options.ignore_alpha;
+    keep_what_holds(scene, options);
     plan(scene, layers, options);
-    if (passes_.empty() && moves_.empty() && image_.use == gpu::Use::sampled) return false;
+    if (passes_.empty() && moves_.empty() && patches_.empty() && image_.use == gpu::Use::sampled)
+        return false;
 
     move(commands);
     upload(commands);
-    commands.use(image_, gpu::Use::depth_target);
-    std::uint64_t first_command = 0;
-    for (const Pass& pass : passes_) {
-        commands.begin_drawing({.depth = &image_,
-                                .depth_layer = pass.layer,
-                                .size = image_.size(),
-                                .area = area_of(pass.texels)});
-        draw(commands, scene, pass, first_command, options);
-        commands.end_drawing();
-        first_command += pass.draws.size();
-    }
+    draw_passes(commands, scene, options);
+    draw_patches(commands, scene, options);
     commands.use(image_, gpu::Use::sampled);
     return true;
 }
 
-bool DepthMap::holds(const raster::GpuScene& scene, const CasterOptions& options) const {
-    return options.ignore_alpha == held_ignores_alpha_ &&
-           same(held_scene_, scene.scene().identity());
+void DepthMap::keep_what_holds(const raster::GpuScene& scene, const CasterOptions& options) {
+    const SceneKey contents = scene.scene().contents_identity();
+    const bool same_scene = same(held_scene_, contents);
+    if (!options.reuse || !same_scene) moving_.clear();
+    const bool more_move = options.reuse && moving_.add(scene.scene());
+    if (!options.reuse || !same_scene || more_move || options.ignore_alpha != held_ignores_alpha_)
+        held_.assign(held_.size(), {});
+    held_scene_ = contents;
+    held_ignores_alpha_ = options.ignore_alpha;
+    make_still_image();
 }
 
 void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {
     const Extent size{size_texels, size_texels};
-    constexpr VkImageUsageFlags kCopied =
-        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     const VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                                     VK_IMAGE_USAGE_SAMPLED_BIT | (reuse ? kCopied : 0);
     if (image_ && image_.size() == size && image_.info().layers == layers &&
@@ -132,12 +131,21 @@ void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {
         return;
     }
     held_.assign(layers, {});
+    still_ = gpu::Image();
     image_ = gpu::Image(
         device_,
         {.size = size, .format = kDepthMapFormat, .usage = usage, .layers = layers, .array = true});
     scratch_ = gpu::Image();
     if (!reuse) return;
     scratch_ = gpu::Image(device_, {.size = size, .format = kDepthMapFormat, .usage = usage});
+}
+
+void DepthMap::make_still_image() {
+    if (moving_.empty()) still_ = gpu::Image();
+    if (moving_.empty() || still_) return;
+    gpu::ImageInfo info = image_.info();
+    info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | kCopied;
+    still_ = gpu::Image(device_, info);
 }
 
 // As many as there can be in any frame of a scene.
@@ -155,27 +163,32 @@ void DepthMap::plan(const raster::GpuScene& scene, std::span<const MapLayer> lay
                     const CasterOptions& options) {
     casters_.clear();
     passes_.clear();
+    patches_.clear();
     moves_.clear();
     texels_ = 0;
     const TexelRect whole = whole_map(layers.front().fit.size_texels);
     for (unsigned i = 0; i < layers.size(); ++i) {
         const MapLayer& layer = layers[i];
         if (!layer.needed) continue;
-        if (const std::optional<MapScroll> scrolled = what_stays(layer, i)) {
+        const std::optional<MapScroll> scrolled = what_stays(layer, i);
+        if (scrolled) {
             if (!scrolled->comes.empty()) moves_.push_back({i, *scrolled});
             for (const TexelRect& strip : scrolled->comes)
                 place_casters(scene, layer, i, strip);
             held_[i]->fit = scrolled->fit;
         } else {
             place_casters(scene, layer, i, whole);
-            held_[i] = {layer.fit, layer.caster_error_texels, layer.faces};
+            held_[i] = {layer.fit, layer.caster_error_texels, layer.faces, {}};
         }
+        if (!moving_.empty()) place_moving(scene, layer, i, !scrolled || !scrolled->comes.empty());
     }
     const bool all_are_whole = moves_.empty() && passes_.size() == layers.size();
     if (options.layered && device_.optional().layered_output && all_are_whole && agree(layers))
         join_passes();
     for (Pass& pass : passes_)
         sort_by_state(pass.draws);
+    for (Patch& patch : patches_)
+        sort_by_state(patch.draws);
 }
 
 void DepthMap::join_passes() {
@@ -202,23 +215,43 @@ void DepthMap::place_casters(const raster::GpuScene& scene, const MapLayer& laye
                              const TexelRect& texels) {
     MapLayer part = layer;
     if (texels != whole_map(layer.fit.size_texels)) part.casters.keep_within(layer.fit, texels);
-    passes_.push_back(
-        {static_cast<int>(index), layer.fit.clamps_near, texels, casters_.add(scene, part, index)});
+    passes_.push_back({static_cast<int>(index), layer.fit.clamps_near, texels,
+                       casters_.add(scene, part, index, moving_.still())});
     texels_ += texels.area();
+}
+
+// With the fit that the layer holds: while it rests, each caster covers the same texels in every
+// frame, and one that rests is drawn over itself where another one passes it.
+void DepthMap::place_moving(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
+                            bool whole) {
+    Held& held = *held_[index];
+    MapLayer part = layer;
+    part.fit = held.fit;
+    const Scene& placed = scene.scene();
+    std::vector<TexelRect> texels{whole_map(held.fit.size_texels)};
+    if (!whole) texels = moving_.changed(held.fit, placed, held.moving);
+    held.moving = moving_.places(placed);
+    if (texels.empty()) return;
+    for (const TexelRect& rect : texels)
+        texels_ += rect.area();
+    const std::vector<std::uint8_t> wanted = moving_.reaching(held.fit, placed, texels);
+    patches_.push_back(
+        {index, held.fit.clamps_near, texels, casters_.add(scene, part, index, wanted)});
 }
 
 // Through the scratch image, because a copy must not overlap what it reads.
 void DepthMap::move(gpu::Commands& commands) {
+    gpu::Image& map = kept();
     for (const Move& move : moves_) {
         const TexelRect& to = move.by.stays;
         const Extent size{to.width, to.height};
         const gpu::LayerPlace from{move.layer, {to.x - move.by.x_texels, to.y - move.by.y_texels}};
-        commands.use(image_, gpu::Use::copy_source);
+        commands.use(map, gpu::Use::copy_source);
         commands.use(scratch_, gpu::Use::copy_target);
-        commands.copy(image_, from, scratch_, {}, size);
+        commands.copy(map, from, scratch_, {}, size);
         commands.use(scratch_, gpu::Use::copy_source);
-        commands.use(image_, gpu::Use::copy_target);
-        commands.copy(scratch_, {}, image_, {move.layer, {to.x, to.y}}, size);
+        commands.use(map, gpu::Use::copy_target);
+        commands.copy(scratch_, {}, map, {move.layer, {to.x, to.y}}, size);
     }
 }
 
@@ -228,32 +261,80 @@ void DepthMap::upload(gpu::Commands& commands) {
         for (const CasterDraw& draw : pass.draws)
             draws.push_back(command_of(draw));
     }
+    for (const Patch& patch : patches_) {
+        for (const CasterDraw& draw : patch.draws)
+            draws.push_back(command_of(draw));
+    }
     if (draws.empty()) return;
     commands.update(instances_, std::as_bytes(std::span(casters_.instances())),
                     gpu::Use::vertex_read);
     commands.update(commands_, std::as_bytes(std::span(draws)), gpu::Use::vertex_read);
 }
 
-DepthMap::Pipelines& DepthMap::pipelines(const Pass& pass) {
-    const bool layered = pass.layer < 0;
-    std::optional<Pipelines>& made = pipelines_[pass.clamps_near ? 1 : 0][layered ? 1 : 0];
+DepthMap::Pipelines& DepthMap::pipelines(bool clamps_near, bool layered) {
+    std::optional<Pipelines>& made = pipelines_[clamps_near ? 1 : 0][layered ? 1 : 0];
     if (!made) {
-        made.emplace(Pipelines{caster_pipeline(device_, false, pass.clamps_near, layered),
-                               caster_pipeline(device_, true, pass.clamps_near, layered)});
+        made.emplace(Pipelines{caster_pipeline(device_, false, clamps_near, layered),
+                               caster_pipeline(device_, true, clamps_near, layered)});
     }
     return *made;
 }
 
-void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pass& pass,
-                    std::uint64_t first_command, const CasterOptions& options) {
-    const Pipelines& with = pipelines(pass);
+void DepthMap::draw_passes(gpu::Commands& commands, const raster::GpuScene& scene,
+                           const CasterOptions& options) {
+    if (passes_.empty()) return;
+    gpu::Image& map = kept();
+    commands.use(map, gpu::Use::depth_target);
+    std::uint64_t first_command = 0;
+    for (const Pass& pass : passes_) {
+        commands.begin_drawing({.depth = &map,
+                                .depth_layer = pass.layer,
+                                .size = map.size(),
+                                .area = area_of(pass.texels)});
+        draw(commands, scene, pipelines(pass.clamps_near, pass.layer < 0), pass.draws,
+             first_command, options);
+        commands.end_drawing();
+        first_command += pass.draws.size();
+    }
+}
+
+void DepthMap::draw_patches(gpu::Commands& commands, const raster::GpuScene& scene,
+                            const CasterOptions& options) {
+    if (patches_.empty()) return;
+    std::vector<gpu::LayerArea> areas;
+    for (const Patch& patch : patches_) {
+        for (const TexelRect& rect : patch.texels)
+            areas.push_back({patch.layer, area_of(rect)});
+    }
+    commands.use(still_, gpu::Use::copy_source);
+    commands.use(image_, gpu::Use::copy_target);
+    commands.copy(still_, image_, areas);
+    commands.use(image_, gpu::Use::depth_target);
+    std::uint64_t first_command = 0;
+    for (const Pass& pass : passes_)
+        first_command += pass.draws.size();
+    for (const Patch& patch : patches_) {
+        commands.begin_drawing({.depth = &image_,
+                                .depth_layer = static_cast<int>(patch.layer),
+                                .size = image_.size(),
+                                .area = area_of(around(patch.texels)),
+                                .clear_depth = false});
+        draw(commands, scene, pipelines(patch.clamps_near, false), patch.draws, first_command,
+             options);
+        commands.end_drawing();
+        first_command += patch.draws.size();
+    }
+}
+
+void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pipelines& with,
+                    std::span<const CasterDraw> draws, std::uint64_t first_command,
+                    const CasterOptions& options) {
     const VkCommandBuffer handle = commands.handle();
     const std::array buffers{scene.positions().handle(), instances_.handle()};
     const std::array<VkDeviceSize, 2> offsets{};
     vkCmdBindVertexBuffers(handle, 0, 2, buffers.data(), offsets.data());
     vkCmdBindIndexBuffer(handle, scene.caster_indices().handle(), 0, VK_INDEX_TYPE_UINT32);
     const bool multi_draw = options.multi_draw && device_.optional().multi_draw;
-    const std::span<const CasterDraw> draws = pass.draws;
     const auto needs_texture = [&](const CasterDraw& draw) {
         return draw.draw->masked && !options.ignore_alpha;
     };

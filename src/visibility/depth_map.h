@@ -2,6 +2,7 @@
 
 #include "gpu/commands.h"
 #include "visibility/caster_draws.h"
+#include "visibility/moving_casters.h"
 
 #include <cstdint>
 #include <memory>
@@ -28,15 +29,16 @@ public:
     /// Draws the casters of each layer, both sides unless the layer culls some, alpha masks
     /// honoured unless they are ignored. The layers have one size. The map is ready to be sampled
     /// afterwards, as an array. To reuse what is there, the casters of a layer must be all that its
-    /// fit sees; a layer that is not needed keeps what it holds. False when nothing was drawn
-    /// because all of it is there.
+    /// fit sees; a layer that is not needed keeps what it holds. Casters that have moved are
+    /// then apart: a second map keeps the others, and where those go or go from, it is copied and
+    /// they are drawn over it. False when nothing was drawn because all of it is there.
     bool record(gpu::Commands& commands, const raster::GpuScene& scene,
                 std::span<const MapLayer> layers, const CasterOptions& options);
 
     const gpu::Image& image() const { return image_; }
     std::uint64_t memory_bytes() const {
-        return image_.memory_bytes() + scratch_.memory_bytes() + instances_.memory_bytes() +
-               commands_.memory_bytes();
+        return image_.memory_bytes() + still_.memory_bytes() + scratch_.memory_bytes() +
+               instances_.memory_bytes() + commands_.memory_bytes();
     }
     /// Drawn by the last record(), over all layers: triangles, and the texels that they could
     /// reach.
@@ -51,11 +53,19 @@ private:
         TexelRect texels;
         std::vector<CasterDraw> draws;
     };
+    /// Texels of a layer that are copied, and what moves and is drawn over them.
+    struct Patch {
+        unsigned layer = 0;
+        bool clamps_near = true;
+        std::vector<TexelRect> texels;  ///< apart
+        std::vector<CasterDraw> draws;
+    };
     /// All that decides what is in a layer, beside what decides it for all layers.
     struct Held {
         LightFit fit;
         float caster_error_texels = 0.0f;
         CasterFaces faces = CasterFaces::all;
+        std::vector<Mat4> moving;  ///< where the casters are drawn that move
     };
     /// What is in a layer and moves.
     struct Move {
@@ -68,26 +78,39 @@ private:
     };
 
     void make_image(unsigned size_texels, unsigned layers, bool reuse);
+    void make_still_image();
     void make_buffers(std::size_t most_draws);
-    bool holds(const raster::GpuScene& scene, const CasterOptions& options) const;
+    void keep_what_holds(const raster::GpuScene& scene, const CasterOptions& options);
     void plan(const raster::GpuScene& scene, std::span<const MapLayer> layers,
               const CasterOptions& options);
     std::optional<MapScroll> what_stays(const MapLayer& layer, unsigned index) const;
     void place_casters(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
                        const TexelRect& texels);
+    void place_moving(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
+                      bool whole);
     void join_passes();
     void move(gpu::Commands& commands);
     void upload(gpu::Commands& commands);
-    void draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pass& pass,
-              std::uint64_t first_command, const CasterOptions& options);
-    Pipelines& pipelines(const Pass& pass);
+    void draw_passes(gpu::Commands& commands, const raster::GpuScene& scene,
+                     const CasterOptions& options);
+    void draw_patches(gpu::Commands& commands, const raster::GpuScene& scene,
+                      const CasterOptions& options);
+    void draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pipelines& with,
+              std::span<const CasterDraw> draws, std::uint64_t first_command,
+              const CasterOptions& options);
+    Pipelines& pipelines(bool clamps_near, bool layered);
+    /// What passes are drawn into.
+    gpu::Image& kept() { return moving_.empty() ? image_ : still_; }
 
     const gpu::Device& device_;
     std::optional<Pipelines> pipelines_[2][2];  // by whether the near plane clamps; layered or not
     gpu::Image image_;
+    gpu::Image still_;    // without the casters that move; only where some do
     gpu::Image scratch_;  // for what moves within a layer; only where maps are reused
     CasterDraws casters_;
+    MovingCasters moving_;
     std::vector<Pass> passes_;
+    std::vector<Patch> patches_;
     std::vector<Move> moves_;
     std::uint64_t texels_ = 0;
     std::vector<std::optional<Held>> held_;  // by layer

@@ -6,9 +6,12 @@
 
 #include <glm/ext/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace gnomon {
 namespace {
@@ -131,6 +134,115 @@ TEST_F(ScrolledDepthMapTest, IsDrawnWholeWhenAnythingElseChanges) {
     EXPECT_EQ(texels(same_again, layer, {}),
               kAllTexels);  // nothing is reused unless that is wanted
     EXPECT_EQ(texels(same_again, layer, {.reuse = true}), kAllTexels);
+}
+
+/// A map of a scene whose instances move, and its counterparts that are drawn anew.
+class MovedDepthMapTest : public ScrolledDepthMapTest {
+protected:
+    MovedDepthMapTest() : scene_(make_builtin_scene("courtyard")) {
+        camera_ = scene_.cameras().at(0);
+        light_ = std::get<DirectionalLight>(scene_.lights().at(0));
+    }
+
+    std::uint32_t instance(std::string_view name) const {
+        const std::vector<Instance>& all = scene_.instances();
+        const auto found = std::ranges::find(all, name, &Instance::name);
+        EXPECT_NE(found, all.end()) << name;
+        return static_cast<std::uint32_t>(found - all.begin());
+    }
+
+    /// From where it was at first.
+    InstancePose pose(std::string_view name, Vec3 by, float turn_rad = 0.0f) const {
+        const Mat4& rest = scene_.instances()[instance(name)].world_from_local;
+        return {instance(name),
+                glm::rotate(glm::translate(Mat4(1.0f), by) * rest, turn_rad, Vec3(0, 1, 0))};
+    }
+
+    MapLayer layer() const { return layer_of(scene_, camera_, light_); }
+
+    /// Texels that differ at all from those of a map drawn anew.
+    std::size_t off(DepthMap& map, const Scene& scene, const MapLayer& layer) const {
+        DepthMap anew(device());
+        record(anew, Scene(scene.data()), layer, {.reuse = true});  // a scene of which none moves
+        const std::vector<float> a = depths(map);
+        const std::vector<float> b = depths(anew);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            count += a[i] != b[i] ? 1 : 0;
+        return count;
+    }
+
+    Scene scene_;
+    Camera camera_;
+    DirectionalLight light_;
+};
+
+TEST_F(MovedDepthMapTest, HoldsWhatDrawingAllOfItWould) {
+    DepthMap map(device());
+    const MapLayer rests = layer();
+    record(map, scene_, rests, {.reuse = true});
+    const std::uint64_t all_triangles = map.triangles();
+    for (int frame = 0; frame < 10; ++frame) {
+        const auto t = static_cast<float>(frame);
+        // Leaves that pass through an urn which rests and one that turns, and out of the map.
+        const std::vector<InstancePose> poses{
+            pose("leaves", {0.9f * t - 4.0f, 0, 0.2f * t}),
+            pose("urn-001", {0, 0.1f, 0}, 0.2f * std::floor(t / 3.0f))};
+        const Scene moved = scene_.moved(poses);
+        EXPECT_TRUE(record(map, moved, rests, {.reuse = true}));
+        if (frame > 0) {
+            EXPECT_LT(map.texels(), kAllTexels / 2) << frame;
+            EXPECT_LT(map.triangles(), all_triangles / 2) << frame;
+        }
+        EXPECT_EQ(off(map, moved, rests), 0u) << frame;
+        EXPECT_FALSE(record(map, moved, rests, {.reuse = true}));  // all rest
+    }
+    // Back where they were, they leave nothing behind.
+    record(map, scene_, rests, {.reuse = true});
+    EXPECT_EQ(off(map, scene_, rests), 0u);
+}
+
+TEST_F(MovedDepthMapTest, FollowsAMapThatScrolls) {
+    DepthMap map(device());
+    record(map, scene_, layer(), {.reuse = true});
+    for (int frame = 0; frame < 10; ++frame) {
+        const auto t = static_cast<float>(frame);
+        // Every other frame the camera rests, and a caster with it.
+        camera_.view_from_world =
+            glm::translate(scene_.cameras().at(0).view_from_world,
+                           Vec3(0.1f * std::floor(t / 2.0f), 0.0f, 0.3f * std::floor(t / 2.0f)));
+        const std::vector<InstancePose> poses{pose("leaves", {0.3f * t, 0, 0}),
+                                              pose("urn-001", {0.2f * std::floor(t / 2.0f), 0, 0})};
+        const Scene moved = scene_.moved(poses);
+        const MapLayer now = layer();
+        record(map, moved, now, {.reuse = true});
+        DepthMap drawn(device());
+        record(drawn, Scene(moved.data()), now, {.reuse = true});
+        // As for maps that scroll without anything that moves.
+        EXPECT_LT(count_off(depths(map), depths(drawn)), kAllTexels / 2000) << frame;
+    }
+}
+
+TEST_F(MovedDepthMapTest, IsDrawnWholeOnceForWhatMovesForTheFirstTime) {
+    DepthMap map(device());
+    const MapLayer rests = layer();
+    const auto texels = [&](const Scene& scene) {
+        record(map, scene, rests, {.reuse = true});
+        EXPECT_EQ(off(map, scene, rests), 0u);
+        return map.texels();
+    };
+    const std::vector first{pose("leaves", {1, 0, 0})};
+    const std::vector then{pose("leaves", {1.5f, 0, 0})};
+    const std::vector other{pose("urn-001", {0, 0, 0.5f})};
+    EXPECT_EQ(texels(scene_), kAllTexels);
+    const std::uint64_t memory_before = map.memory_bytes();
+    EXPECT_EQ(texels(scene_.moved(first)), 2 * kAllTexels);  // all that rest, and a copy
+    EXPECT_GE(map.memory_bytes() - memory_before, kAllTexels * sizeof(float));
+    EXPECT_LT(texels(scene_.moved(then)), kAllTexels / 2);
+    EXPECT_EQ(texels(scene_.moved(other)), 2 * kAllTexels);
+    EXPECT_LT(texels(scene_.moved(then).moved(other)), kAllTexels / 2);
+    EXPECT_EQ(texels(make_builtin_scene("courtyard")), kAllTexels);  // another scene: none moves
+    EXPECT_EQ(map.memory_bytes(), memory_before);
 }
 
 }  // namespace

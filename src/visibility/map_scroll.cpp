@@ -2,8 +2,8 @@
 // come into them are drawn. M. Acton, "CSM Scrolling: An Acceleration Technique for the Rendering
 // of Cascaded Shadow Maps", SIGGRAPH 2012 (Advances in Real-Time Rendering in Games), over the
 // whole texels of M. Valient, "Stable Rendering of Cascaded Shadow Maps", ShaderX6, 2008. There
-// moving casters are drawn over a copy; here casters rest, as a scene does. Depths stay as well: a
-// map's depth range is that of the scene, which does not move with the camera.
+// moving casters are drawn over a copy, and so they are here (moving_casters.cpp). Depths stay as
+// well: a map's depth range is that of the scene, which does not move with the camera.
 
 #include "visibility/map_scroll.h"
 

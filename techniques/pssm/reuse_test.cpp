@@ -6,10 +6,13 @@
 
 #include <glm/ext/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace gnomon {
 namespace {
@@ -109,6 +112,51 @@ TEST_F(ReusedMapsTest, AreDrawnAnewWhenAnythingButTheCameraChanges) {
     expect_same("hardly anything is seen");
     frame.camera = frame.scene.cameras().at(0);
     expect_same("and back");
+}
+
+class MovedCastersTest : public ReusedMapsTest {
+protected:
+    /// The scene with things on their way: to and fro, round about, and one that stops.
+    static Scene on_way(const Scene& scene, int frame) {
+        const auto t = static_cast<float>(frame);
+        std::vector<InstancePose> poses;
+        for (std::uint32_t i = 1; i < scene.instances().size(); i += 3) {  // not the ground
+            const float way = i % 2 == 0 ? t : std::min(t, 4.0f);
+            const Mat4& rest = scene.instances()[i].world_from_local;
+            poses.push_back(
+                {i, glm::rotate(
+                        glm::translate(Mat4(1.0f), {0.3f * std::sin(way), 0, 0.2f * way}) * rest,
+                        0.1f * way, Vec3(0, 1, 0))});
+        }
+        return scene.moved(poses);
+    }
+};
+
+// No map scrolls, so that all is drawn alike, to the last bit.
+TEST_F(MovedCastersTest, GiveThePicturesOfMapsDrawnAnewWhileTheCameraRests) {
+    for (const char* name : {"field-small", "courtyard"}) {
+        const Pair pair({{"map_size", 1024}});
+        Frame frame = frame_of(name);
+        const Scene scene = frame.scene;
+        for (const int i : {0, 1, 2, 3, 4, 5, 6, 6, 7, 0}) {
+            frame.scene = i == 0 ? scene : on_way(scene, i);
+            EXPECT_EQ(pair.different(frame), 0.0) << name << ", frame " << i;
+        }
+    }
+}
+
+TEST_F(MovedCastersTest, GiveThemAlongACamerasPath) {
+    for (const int step_texels : {1, 16}) {
+        const Pair pair({{"stable_step", step_texels}, {"map_size", 1024}});
+        Frame frame = frame_of("field-small");
+        const Scene scene = frame.scene;
+        const Camera start = frame.camera;
+        for (int i = 0; i < kFrames; ++i) {
+            frame.camera = on_path(start, i / 2);  // every other frame it rests
+            frame.scene = on_way(scene, i);
+            EXPECT_LT(pair.different(frame), i == 0 ? 1e-12 : kMostDifferent) << i;
+        }
+    }
 }
 
 // What is made of a map follows when it scrolls.
