@@ -3,6 +3,7 @@
 
 #include "harness.h"
 #include "subjects.h"
+#include "technique/map_technique.h"
 
 #include <glm/ext/matrix_transform.hpp>
 
@@ -68,6 +69,13 @@ Scene made_at(int step) {
     SceneData data = yard().data();
     for (const InstancePose& pose : poses_at(step))
         data.instances[pose.instance].world_from_local = pose.world_from_local;
+    return Scene(std::move(data));
+}
+
+/// And its leaf bent.
+Scene bent_at(int step) {
+    SceneData data = made_at(step).data();
+    data.meshes[data.instances[kLeaf].mesh].positions[2].y -= 0.1f * static_cast<float>(step);
     return Scene(std::move(data));
 }
 
@@ -221,6 +229,27 @@ TEST_P(MovedReusing, MapsGiveThePicturesOfMapsDrawnAnew) {
         if (step == 3) frame.camera = look_at({3.5f, 2.0f, 3.0f}, {0.0f, 0.3f, 0.0f});
         const auto drawing = make_technique(context(), GetParam().technique, params);
         EXPECT_EQ(pixels(reusing->render(frame)), pixels(drawing->render(frame))) << step;
+        // What stays is drawn at first, without what moves when that moves first, and for each
+        // of the camera's jumps.
+        const bool is_drawn = step <= 1 || step == 3 || step == 4;
+        EXPECT_EQ(dynamic_cast<MapTechnique&>(*reusing).map().drew_still(), is_drawn) << step;
+    }
+}
+
+// Scenes that are made or loaded anew for each pose, as of skins.
+TEST_P(MovedReusing, MapsFollowScenesMadeAnew) {
+    Params params = GetParam().params;
+    params.set("map_size", 256);
+    Params reuse = params;
+    reuse.set("reuse_maps", true);
+    params.set("cull_casters", false);
+    const auto reusing = make_technique(context(), GetParam().technique, reuse);
+    const auto drawing = make_technique(context(), GetParam().technique, params);
+    const Light light = light_for(find_technique(GetParam().technique).lights);
+    for (int step = 0; step <= kSteps; ++step) {
+        const Frame frame = frame_of(bent_at(step), light);
+        EXPECT_EQ(pixels(reusing->render(frame)), pixels(drawing->render(frame))) << step;
+        EXPECT_EQ(dynamic_cast<MapTechnique&>(*reusing).map().drew_still(), step <= 1) << step;
     }
 }
 

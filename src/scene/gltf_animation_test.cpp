@@ -1,5 +1,6 @@
 #include "scene/gltf_animation.h"
 
+#include "scene/caster_changes.h"
 #include "scene/load_test_scene.h"
 
 #include <gtest/gtest.h>
@@ -140,6 +141,18 @@ TEST(GltfAnimation, SkinsFollowTheirJoints) {
     expect_near(corner_in_file(bent, 0, 0, 1), {-1, 1, 0}, kRounding);
     expect_near(corner_in_file(bent, 0, 0, 2), {-0.5, 1.5, 0}, kRounding);
     EXPECT_TRUE(bent.warnings().empty());
+}
+
+// Beside it stands a triangle that rests.
+TEST(GltfAnimation, PosesOfASkinAreToldFromWhatRests) {
+    TestGltf gltf = skinned_triangle();
+    gltf.json["nodes"].push_back({{"mesh", 0}});
+    gltf.json["scenes"][0]["nodes"] = {0, 1, 3};
+    const Scene rest = gltf.load();
+    ASSERT_EQ(rest.instances().size(), 2u);
+    EXPECT_EQ(changed_casters(rest, gltf.load({.animation_time_s = 1.0})),
+              std::vector<std::uint32_t>{0});
+    EXPECT_EQ(changed_casters(rest, gltf.load()), std::vector<std::uint32_t>{});
 }
 
 TEST(GltfAnimation, SkinsFarFromTheOriginLoseNothing) {

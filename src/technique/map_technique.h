@@ -138,6 +138,8 @@ class MapTechnique : public GpuTechnique {
 public:
     /// MapLookup::show_proven(), for those who count.
     void show_proven() { lookup_.show_proven(); }
+    /// The map of the last frame, for them as well.
+    const DepthMap& map() const { return map_; }
 
 protected:
     MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options);

@@ -111,13 +111,10 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
 }
 
 void DepthMap::keep_what_holds(const raster::GpuScene& scene, const CasterOptions& options) {
-    const SceneKey contents = scene.scene().contents_identity();
-    const bool same_scene = same(held_scene_, contents);
-    if (!options.reuse || !same_scene) moving_.clear();
-    const bool more_move = options.reuse && moving_.add(scene.scene());
-    if (!options.reuse || !same_scene || more_move || options.ignore_alpha != held_ignores_alpha_)
-        held_.assign(held_.size(), {});
-    held_scene_ = contents;
+    if (!options.reuse) moving_.clear();
+    const bool holds = options.reuse && moving_.follow(scene.scene()) &&
+                       options.ignore_alpha == held_ignores_alpha_;
+    if (!holds) held_.assign(held_.size(), {});
     held_ignores_alpha_ = options.ignore_alpha;
     make_still_image();
 }
@@ -227,14 +224,13 @@ void DepthMap::place_moving(const raster::GpuScene& scene, const MapLayer& layer
     Held& held = *held_[index];
     MapLayer part = layer;
     part.fit = held.fit;
-    const Scene& placed = scene.scene();
     std::vector<TexelRect> texels{whole_map(held.fit.size_texels)};
-    if (!whole) texels = moving_.changed(held.fit, placed, held.moving);
-    held.moving = moving_.places(placed);
+    if (!whole) texels = moving_.changed(held.fit, held.moving);
+    held.moving = moving_.places();
     if (texels.empty()) return;
     for (const TexelRect& rect : texels)
         texels_ += rect.area();
-    const std::vector<std::uint8_t> wanted = moving_.reaching(held.fit, placed, texels);
+    const std::vector<std::uint8_t> wanted = moving_.reaching(held.fit, texels);
     patches_.push_back(
         {index, held.fit.clamps_near, texels, casters_.add(scene, part, index, wanted)});
 }

@@ -29,9 +29,9 @@ public:
     /// Draws the casters of each layer, both sides unless the layer culls some, alpha masks
     /// honoured unless they are ignored. The layers have one size. The map is ready to be sampled
     /// afterwards, as an array. To reuse what is there, the casters of a layer must be all that its
-    /// fit sees; a layer that is not needed keeps what it holds. Casters that have moved are
-    /// then apart: a second map keeps the others, and where those go or go from, it is copied and
-    /// they are drawn over it. False when nothing was drawn because all of it is there.
+    /// fit sees; a layer that is not needed keeps what it holds. Casters that have moved or
+    /// changed are then apart: a second map keeps the others, and where those go or go from, it is
+    /// copied and they are drawn over it. False when nothing was drawn because all of it is there.
     bool record(gpu::Commands& commands, const raster::GpuScene& scene,
                 std::span<const MapLayer> layers, const CasterOptions& options);
 
@@ -44,6 +44,8 @@ public:
     /// reach.
     std::uint64_t triangles() const { return casters_.triangles(); }
     std::uint64_t texels() const { return texels_; }
+    /// Whether it drew any casters that stay, or cleared texels for them.
+    bool drew_still() const { return !passes_.empty(); }
 
 private:
     /// What is drawn at once: a layer, a strip of it, or all layers.
@@ -65,7 +67,7 @@ private:
         LightFit fit;
         float caster_error_texels = 0.0f;
         CasterFaces faces = CasterFaces::all;
-        std::vector<Mat4> moving;  ///< where the casters are drawn that move
+        std::vector<CasterPlace> moving;  ///< where the casters are drawn that move
     };
     /// What is in a layer and moves.
     struct Move {
@@ -114,7 +116,6 @@ private:
     std::vector<Move> moves_;
     std::uint64_t texels_ = 0;
     std::vector<std::optional<Held>> held_;  // by layer
-    SceneKey held_scene_;
     bool held_ignores_alpha_ = false;
     gpu::Buffer instances_;
     gpu::Buffer commands_;  // of all passes, one after the other

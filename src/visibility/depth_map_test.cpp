@@ -128,12 +128,12 @@ TEST_F(ScrolledDepthMapTest, IsDrawnWholeWhenAnythingElseChanges) {
     light.to_light_ws = normalize(light.to_light_ws + Vec3(0.01f, 0.0f, 0.0f));
     layer = layer_of(scene, camera, light);
     EXPECT_EQ(texels(scene, layer, {.reuse = true}), kAllTexels);
-    const Scene same_again = make_builtin_scene("courtyard");
-    EXPECT_EQ(texels(same_again, layer, {.reuse = true}), kAllTexels);
-    EXPECT_EQ(texels(same_again, layer, {.reuse = true}), 0u);
-    EXPECT_EQ(texels(same_again, layer, {}),
-              kAllTexels);  // nothing is reused unless that is wanted
-    EXPECT_EQ(texels(same_again, layer, {.reuse = true}), kAllTexels);
+    const Scene other = make_builtin_scene("field-small");
+    EXPECT_EQ(texels(other, layer, {.reuse = true}), kAllTexels);
+    EXPECT_EQ(texels(other, layer, {.reuse = true}), 0u);
+    EXPECT_EQ(texels(make_builtin_scene("field-small"), layer, {.reuse = true}), 0u);  // alike
+    EXPECT_EQ(texels(other, layer, {}), kAllTexels);  // nothing is reused unless that is wanted
+    EXPECT_EQ(texels(other, layer, {.reuse = true}), kAllTexels);
 }
 
 /// A map of a scene whose instances move, and its counterparts that are drawn anew.
@@ -193,6 +193,7 @@ TEST_F(MovedDepthMapTest, HoldsWhatDrawingAllOfItWould) {
         if (frame > 0) {
             EXPECT_LT(map.texels(), kAllTexels / 2) << frame;
             EXPECT_LT(map.triangles(), all_triangles / 2) << frame;
+            EXPECT_FALSE(map.drew_still()) << frame;
         }
         EXPECT_EQ(off(map, moved, rests), 0u) << frame;
         EXPECT_FALSE(record(map, moved, rests, {.reuse = true}));  // all rest
@@ -241,8 +242,29 @@ TEST_F(MovedDepthMapTest, IsDrawnWholeOnceForWhatMovesForTheFirstTime) {
     EXPECT_LT(texels(scene_.moved(then)), kAllTexels / 2);
     EXPECT_EQ(texels(scene_.moved(other)), 2 * kAllTexels);
     EXPECT_LT(texels(scene_.moved(then).moved(other)), kAllTexels / 2);
-    EXPECT_EQ(texels(make_builtin_scene("courtyard")), kAllTexels);  // another scene: none moves
+    EXPECT_LT(texels(make_builtin_scene("courtyard")), kAllTexels / 2);  // at rest again
+    EXPECT_EQ(texels(make_builtin_scene("field-small")), kAllTexels);    // where none moves
     EXPECT_EQ(map.memory_bytes(), memory_before);
+}
+
+// As a skin in another pose.
+TEST_F(MovedDepthMapTest, HoldsWhatChangesItsShape) {
+    DepthMap map(device());
+    const MapLayer rests = layer();
+    record(map, scene_, rests, {.reuse = true});
+    for (int frame = 0; frame < 6; ++frame) {
+        SceneData data = scene_.data();
+        for (Vec3& p : data.meshes[data.instances[instance("leaves")].mesh].positions)
+            p.x += 0.1f * static_cast<float>(frame) * p.y * p.y;
+        data.instances[instance("urn-001")].world_from_local =
+            pose("urn-001", {0, 0.1f * static_cast<float>(frame), 0}).world_from_local;
+        record(map, Scene(data), rests, {.reuse = true});
+        if (frame > 1) {
+            EXPECT_FALSE(map.drew_still()) << frame;
+            EXPECT_LT(map.texels(), kAllTexels / 2) << frame;
+        }
+        EXPECT_EQ(off(map, Scene(data), rests), 0u) << frame;
+    }
 }
 
 }  // namespace

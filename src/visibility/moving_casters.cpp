@@ -2,9 +2,12 @@
 // Technique for the Rendering of Cascaded Shadow Maps", SIGGRAPH 2012 (Advances in Real-Time
 // Rendering in Games), where moving casters are drawn over a copy of the map in each frame. Here
 // only the texels are copied that they cover or have left, and none where all of them rest; and
-// nobody says which casters move: those do that have once moved.
+// nobody says which casters move: those do that have once moved, or that differ from one scene to
+// the next.
 
 #include "visibility/moving_casters.h"
+
+#include "scene/caster_changes.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
 
@@ -52,10 +55,6 @@ void join(std::vector<TexelRect>& rects, TexelRect added) {
     rects.push_back(added);
 }
 
-const Box3& local_bounds(const Scene& scene, std::uint32_t instance) {
-    return scene.mesh_bounds(scene.instances()[instance].mesh);
-}
-
 }  // namespace
 
 TexelRect covered_texels(const LightFit& fit, const Mat4& world_from_local, const Box3& local) {
@@ -101,51 +100,75 @@ std::vector<TexelRect> apart(std::span<const TexelRect> rects) {
 }
 
 void MovingCasters::clear() {
+    scene_.reset();
     moving_.clear();
     still_.clear();
+    shapes_.clear();
 }
 
-bool MovingCasters::add(const Scene& scene) {
+// Of one scene's placements none differ but in what their moving() names.
+std::vector<std::uint32_t> MovingCasters::changes(const Scene& scene) {
+    if (scene_ && same(scene_->contents_identity(), scene.contents_identity())) return {};
+    const auto changed = scene_ ? scene::changed_casters(*scene_, scene) : std::nullopt;
+    if (!changed) {
+        clear();
+        shapes_.assign(scene.instances().size(), 0);
+        return {};
+    }
+    for (const std::uint32_t instance : *changed)
+        ++shapes_[instance];
+    return *changed;
+}
+
+bool MovingCasters::follow(const Scene& scene) {
+    std::vector<std::uint32_t> now;
+    std::ranges::set_union(changes(scene), scene.moving(), std::back_inserter(now));
+    const bool has_more = !std::ranges::includes(moving_, now);
+    const bool is_other = !scene_.has_value();
+    scene_ = scene;
+    if (!has_more) return !is_other;
     std::vector<std::uint32_t> all;
-    std::ranges::set_union(moving_, scene.moving(), std::back_inserter(all));
-    if (all.size() == moving_.size()) return false;
+    std::ranges::set_union(moving_, now, std::back_inserter(all));
     moving_ = std::move(all);
     still_.assign(scene.instances().size(), 1);
     for (const std::uint32_t instance : moving_)
         still_[instance] = 0;
-    return true;
+    return false;
 }
 
-std::vector<Mat4> MovingCasters::places(const Scene& scene) const {
-    std::vector<Mat4> places;
-    for (const std::uint32_t instance : moving_)
-        places.push_back(scene.instances()[instance].world_from_local);
+std::vector<CasterPlace> MovingCasters::places() const {
+    std::vector<CasterPlace> places;
+    for (const std::uint32_t i : moving_) {
+        const Instance& instance = scene_->instances()[i];
+        places.push_back(
+            {instance.world_from_local, scene_->mesh_bounds(instance.mesh), shapes_[i]});
+    }
     return places;
 }
 
-std::vector<TexelRect> MovingCasters::changed(const LightFit& fit, const Scene& scene,
-                                              std::span<const Mat4> before) const {
+std::vector<TexelRect> MovingCasters::changed(const LightFit& fit,
+                                              std::span<const CasterPlace> before) const {
+    const std::vector<CasterPlace> now = places();
     std::vector<TexelRect> rects;
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-        const Mat4& now = scene.instances()[moving_[i]].world_from_local;
-        if (now == before[i]) continue;
-        for (const Mat4& place : {before[i], now})
-            rects.push_back(covered_texels(fit, place, local_bounds(scene, moving_[i])));
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        if (now[i].same_as(before[i])) continue;
+        for (const CasterPlace& place : {before[i], now[i]})
+            rects.push_back(covered_texels(fit, place.world_from_local, place.local));
     }
     return apart(rects);
 }
 
-std::vector<std::uint8_t> MovingCasters::reaching(const LightFit& fit, const Scene& scene,
+std::vector<std::uint8_t> MovingCasters::reaching(const LightFit& fit,
                                                   std::span<const TexelRect> texels) const {
-    std::vector<std::uint8_t> reaching(scene.instances().size(), 0);
-    for (const std::uint32_t instance : moving_) {
-        const TexelRect covers = covered_texels(fit, scene.instances()[instance].world_from_local,
-                                                local_bounds(scene, instance));
+    const std::vector<CasterPlace> now = places();
+    std::vector<std::uint8_t> reaching(still_.size(), 0);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const TexelRect covers = covered_texels(fit, now[i].world_from_local, now[i].local);
         const bool meets =
             covers.area() > 0 && std::ranges::any_of(texels, [&](const TexelRect& rect) {
                 return overlap(rect, covers);
             });
-        reaching[instance] = meets ? 1 : 0;
+        reaching[moving_[i]] = meets ? 1 : 0;
     }
     return reaching;
 }

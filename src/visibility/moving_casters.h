@@ -4,6 +4,7 @@
 #include "visibility/map_scroll.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,31 +20,49 @@ TexelRect around(std::span<const TexelRect> rects);
 /// Rectangles that hold these and do not overlap; few.
 std::vector<TexelRect> apart(std::span<const TexelRect> rects);
 
-/// Which instances of a scene move, in all the placements of it that a map has shown: those that
-/// have once moved are taken to go on, so that what is left never changes.
+/// Where a caster is, and what it is.
+struct CasterPlace {
+    Mat4 world_from_local{1.0f};
+    Box3 local;               ///< around its triangles
+    std::uint32_t shape = 0;  ///< another number for other triangles
+
+    bool same_as(const CasterPlace& other) const {
+        return world_from_local == other.world_from_local && shape == other.shape;
+    }
+};
+
+/// Which instances of a scene move, in all the scenes that a map has shown: those that have once
+/// moved, or changed their shape, are taken to go on, so that what is left never changes.
 class MovingCasters {
 public:
     void clear();
-    /// Takes in a placement of the same scene; true when more move than before.
-    bool add(const Scene& scene);
+    /// Takes in the next scene: another placement of the last one, or one whose casters are alike
+    /// but for some, as another pose of the same file. False where other casters are left than
+    /// before; of a scene that has nothing in common with the last one all are that it does not
+    /// name itself.
+    bool follow(const Scene& scene);
 
     bool empty() const { return moving_.empty(); }
-    /// By instance: 1 for those that stay, else 0.
+    /// By instance: 1 for those that stay, else 0; empty when all stay.
     std::span<const std::uint8_t> still() const { return still_; }
 
-    /// Where those are that move, in the order in which changed() wants them.
-    std::vector<Mat4> places(const Scene& scene) const;
-    /// Texels apart from each other that hold all that those cover now, or covered at `before`,
-    /// which are elsewhere now.
-    std::vector<TexelRect> changed(const LightFit& fit, const Scene& scene,
-                                   std::span<const Mat4> before) const;
+    /// Those that move in the scene that was taken in last, in the order in which changed() wants
+    /// them.
+    std::vector<CasterPlace> places() const;
+    /// Texels apart from each other that hold all that those cover now, or covered `before`, which
+    /// were elsewhere then or of another shape.
+    std::vector<TexelRect> changed(const LightFit& fit, std::span<const CasterPlace> before) const;
     /// By instance: 1 for those that move and can cover some of the texels, else 0.
-    std::vector<std::uint8_t> reaching(const LightFit& fit, const Scene& scene,
+    std::vector<std::uint8_t> reaching(const LightFit& fit,
                                        std::span<const TexelRect> texels) const;
 
 private:
+    std::vector<std::uint32_t> changes(const Scene& scene);
+
+    std::optional<Scene> scene_;         // the last
     std::vector<std::uint32_t> moving_;  // rising
     std::vector<std::uint8_t> still_;
+    std::vector<std::uint32_t> shapes_;  // by instance
 };
 
 }  // namespace gnomon

@@ -116,8 +116,8 @@ TEST(Apart, JoinsNeighboursOnlyWhereTheyOverlap) {
 
 class MovingCastersTest : public testing::Test {
 protected:
-    /// Boxes side by side.
-    static Scene boxes() {
+    /// Triangles side by side.
+    static Scene row() {
         SceneData data;
         data.materials.emplace_back();
         data.meshes.push_back({.name = "triangle",
@@ -132,40 +132,86 @@ protected:
         const std::array pose{InstancePose{instance, at(x)}};
         return scene.moved(pose);
     }
+    /// The scene made anew, with an instance whose triangle reaches so high.
+    static Scene bend(const Scene& scene, std::uint32_t instance, float height_m) {
+        SceneData data = scene.data();
+        data.instances[instance].mesh = static_cast<std::uint32_t>(data.meshes.size());
+        data.meshes.push_back(data.meshes[0]);
+        data.meshes.back().positions[2].y = height_m;
+        return Scene(data);
+    }
 };
 
 TEST_F(MovingCastersTest, AreAllThatEverMoved) {
-    const Scene scene = boxes();
+    const Scene scene = row();
     MovingCasters moving;
-    EXPECT_FALSE(moving.add(scene));
+    EXPECT_FALSE(moving.follow(scene));
+    EXPECT_TRUE(moving.follow(scene));
     EXPECT_TRUE(moving.empty());
-    EXPECT_TRUE(moving.add(moved(scene, 2, 2.5f)));
-    EXPECT_FALSE(moving.add(moved(scene, 2, 3.0f)));
-    EXPECT_FALSE(moving.add(scene));
-    EXPECT_TRUE(moving.add(moved(scene, 0, -7.0f)));
+    EXPECT_FALSE(moving.follow(moved(scene, 2, 2.5f)));
+    EXPECT_TRUE(moving.follow(moved(scene, 2, 3.0f)));
+    EXPECT_TRUE(moving.follow(scene));
+    EXPECT_FALSE(moving.follow(moved(scene, 0, -7.0f)));
+    EXPECT_TRUE(moving.follow(scene));
     EXPECT_EQ(std::vector(moving.still().begin(), moving.still().end()),
               (std::vector<std::uint8_t>{0, 1, 0, 1}));
-    EXPECT_EQ(moving.places(scene), (std::vector{at(-6), at(2)}));
+    ASSERT_EQ(moving.places().size(), 2u);
+    EXPECT_EQ(moving.places()[0].world_from_local, at(-6));
+    EXPECT_EQ(moving.places()[1].world_from_local, at(2));
     moving.clear();
     EXPECT_TRUE(moving.empty());
     EXPECT_TRUE(moving.still().empty());
 }
 
+TEST_F(MovingCastersTest, AreThoseThatDifferInAnotherPose) {
+    const Scene scene = row();
+    MovingCasters moving;
+    moving.follow(scene);
+    EXPECT_TRUE(moving.follow(Scene(scene.data())));  // made again
+    const Scene bent = bend(scene, 1, 0.5f);
+    EXPECT_FALSE(moving.follow(bent));
+    EXPECT_EQ(std::vector(moving.still().begin(), moving.still().end()),
+              (std::vector<std::uint8_t>{1, 0, 1, 1}));
+    const std::vector<CasterPlace> before = moving.places();
+    EXPECT_TRUE(moving.follow(bent));
+    EXPECT_TRUE(moving.changed(stable_fit(), before).empty());
+    // It rests where it is and changes.
+    EXPECT_TRUE(moving.follow(bend(scene, 1, 3.0f)));
+    const std::vector<TexelRect> texels = moving.changed(stable_fit(), before);
+    ASSERT_EQ(texels.size(), 1u);
+    Box3 highest = scene.mesh_bounds(0);
+    highest.include(Vec3(0, 3, 0));
+    EXPECT_EQ(texels[0], covered_texels(stable_fit(), at(-2), highest));
+}
+
+TEST_F(MovingCastersTest, OfAnotherSceneAreItsOwn) {
+    const Scene scene = row();
+    MovingCasters moving;
+    moving.follow(moved(scene, 2, 2.5f));
+    SceneData fewer = scene.data();
+    fewer.instances.pop_back();
+    EXPECT_FALSE(moving.follow(moved(Scene(fewer), 1, 0.0f)));
+    EXPECT_EQ(std::vector(moving.still().begin(), moving.still().end()),
+              (std::vector<std::uint8_t>{1, 0, 1}));
+}
+
 TEST_F(MovingCastersTest, ChangeTheTexelsWhereTheyGoAndComeFrom) {
     const LightFit fit = stable_fit();
-    const Scene before = moved(moved(boxes(), 0, -5.9f), 3, 5.9f);
+    const Scene before = moved(moved(row(), 0, -5.9f), 3, 5.9f);
     const Scene after = moved(before, 3, 3.0f);
     MovingCasters moving;
-    moving.add(after);
-    EXPECT_TRUE(moving.changed(fit, before, moving.places(before)).empty());
-    const std::vector<TexelRect> texels = moving.changed(fit, after, moving.places(before));
+    moving.follow(before);
+    const std::vector<CasterPlace> places = moving.places();
+    EXPECT_TRUE(moving.changed(fit, places).empty());
+    EXPECT_TRUE(moving.follow(after));
+    const std::vector<TexelRect> texels = moving.changed(fit, places);
     ASSERT_EQ(texels.size(), 2u);
     const Box3& box = after.mesh_bounds(0);
     EXPECT_EQ(texels[0], covered_texels(fit, at(5.9f), box));
     EXPECT_EQ(texels[1], covered_texels(fit, at(3.0f), box));
     // Instance 2 is near 3 but stays.
-    EXPECT_EQ(moving.reaching(fit, after, texels), (std::vector<std::uint8_t>{0, 0, 0, 1}));
-    EXPECT_EQ(moving.reaching(fit, after, std::vector{whole_map(kMapSize)}),
+    EXPECT_EQ(moving.reaching(fit, texels), (std::vector<std::uint8_t>{0, 0, 0, 1}));
+    EXPECT_EQ(moving.reaching(fit, std::vector{whole_map(kMapSize)}),
               (std::vector<std::uint8_t>{1, 0, 0, 1}));
 }
 
