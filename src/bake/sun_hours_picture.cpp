@@ -4,6 +4,7 @@
 #include "bake/sun_hours_map.h"
 #include "bake/thread_limit.h"
 #include "base/parallel.h"
+#include "trace/pixel_rays.h"
 #include "trace/tracer.h"
 
 #include <fmt/chrono.h>
@@ -39,34 +40,6 @@ Vec3 grey(Vec3 normal_ws) {
     const Vec3 from = normalize(Vec3(0.4f, 0.8f, 0.5f));
     return Vec3(0.62f + 0.22f * glm::dot(normal_ws, from));
 }
-
-/// The ray through a point of the picture, in pixels.
-class PixelRays {
-public:
-    PixelRays(const Camera& camera, Extent size)
-        : world_from_view_(glm::inverse(glm::dmat4(camera.view_from_world))),
-          parallel_(camera.ortho_height_m > 0.0f),
-          half_height_(parallel_ ? 0.5 * camera.ortho_height_m : std::tan(0.5 * camera.fov_y_rad)),
-          size_(size) {}
-
-    struct Ray {
-        DVec3 origin_ws, direction_ws;
-    };
-    Ray operator()(double x, double y) const {
-        const double scale = 2.0 * half_height_ / size_.height;
-        const glm::dvec4 at((x - 0.5 * size_.width) * scale, (0.5 * size_.height - y) * scale,
-                            parallel_ ? 0.0 : -1.0, parallel_ ? 1.0 : 0.0);
-        const DVec3 in_world(world_from_view_ * at);
-        if (parallel_) return {in_world, -DVec3(world_from_view_[2])};
-        return {DVec3(world_from_view_[3]), in_world};
-    }
-
-private:
-    glm::dmat4 world_from_view_;
-    bool parallel_;
-    double half_height_;
-    Extent size_;
-};
 
 /// Paints the samples of a picture.
 class Painter {
@@ -184,7 +157,7 @@ private:
     const SunHoursResult& result_;
     const Camera& camera_;
     Extent size_;
-    PixelRays rays_;
+    trace::PixelRays rays_;
     int greatest_h_;
 };
 

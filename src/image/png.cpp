@@ -105,19 +105,31 @@ void read_rows(Reader& reader, std::uint8_t* rgba, std::size_t row_bytes) {
     png_read_end(reader.png, nullptr);
 }
 
+/// Makes a step of reading. Throws Error{input} when the file is damaged.
+template <typename Step>
+void read(Reader& reader, std::string_view name, const Step& step) {
+    if (!guarded(reader.png, step)) {
+        fail_input("{}: is a damaged PNG: {}", name, reader.message.text.data());
+    }
+}
+
+/// Reads the header. Throws when the picture is larger than what is accepted.
+Extent begin(Reader& reader, std::string_view name) {
+    if (reader.info == nullptr) fail_machine("{}: out of memory for a PNG reader", name);
+    const std::size_t file_bytes = reader.rest.size();
+    read(reader, name, [&] { read_header(reader); });
+    const Extent size{png_get_image_width(reader.png, reader.info),
+                      png_get_image_height(reader.png, reader.info)};
+    check_decoded_size(size, file_bytes, kMaxPixelsPerByte, name);
+    return size;
+}
+
 }  // namespace
 
 Rgba8 decode_png(std::span<const std::uint8_t> bytes, std::string_view name) {
     Reader reader(bytes);
-    if (reader.info == nullptr) fail_machine("{}: out of memory for a PNG reader", name);
-    const auto require = [&](bool done) {
-        if (!done) fail_input("{}: is a damaged PNG: {}", name, reader.message.text.data());
-    };
-    require(guarded(reader.png, [&] { read_header(reader); }));
-    const Extent size{png_get_image_width(reader.png, reader.info),
-                      png_get_image_height(reader.png, reader.info)};
-    check_decoded_size(size, bytes.size(), kMaxPixelsPerByte, name);
-    require(guarded(reader.png, [&] { request_rgba8(reader); }));
+    const Extent size = begin(reader, name);
+    read(reader, name, [&] { request_rgba8(reader); });
 
     const std::size_t row_bytes = kChannelsRgba * size.width;
     if (png_get_rowbytes(reader.png, reader.info) != row_bytes) {
@@ -125,34 +137,27 @@ Rgba8 decode_png(std::span<const std::uint8_t> bytes, std::string_view name) {
     }
     Rgba8 picture = blank_picture(size, name);
     std::uint8_t* rgba = picture.rgba.data();
-    require(guarded(reader.png, [&] { read_rows(reader, rgba, row_bytes); }));
+    read(reader, name, [&] { read_rows(reader, rgba, row_bytes); });
     return picture;
 }
 
 Rgba16 decode_png_numbers(std::span<const std::uint8_t> bytes, std::string_view name) {
     Reader reader(bytes);
-    if (reader.info == nullptr) fail_machine("{}: out of memory for a PNG reader", name);
-    const auto require = [&](bool done) {
-        if (!done) fail_input("{}: is a damaged PNG: {}", name, reader.message.text.data());
-    };
-    require(guarded(reader.png, [&] { read_header(reader); }));
-    const Extent size{png_get_image_width(reader.png, reader.info),
-                      png_get_image_height(reader.png, reader.info)};
+    const Extent size = begin(reader, name);
     const int bits = png_get_bit_depth(reader.png, reader.info);
     if (png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_RGBA || bits < 8 ||
         png_get_interlace_type(reader.png, reader.info) != PNG_INTERLACE_NONE) {
         fail_input("{}: is no RGBA PNG of 8 or 16 bits, row by row", name);
     }
-    check_decoded_size(size, bytes.size(), kMaxPixelsPerByte, name);
-    require(guarded(reader.png, [&] {
+    read(reader, name, [&] {
         if (bits == 16 && std::endian::native == std::endian::little) png_set_swap(reader.png);
         png_read_update_info(reader.png, reader.info);
-    }));
+    });
     const std::size_t row_values = kChannelsRgba * size.width;
     const std::size_t row_bytes = row_values * static_cast<std::size_t>(bits / 8);
     std::vector<std::uint8_t> rows(row_bytes * size.height);
     std::uint8_t* first = rows.data();
-    require(guarded(reader.png, [&] { read_rows(reader, first, row_bytes); }));
+    read(reader, name, [&] { read_rows(reader, first, row_bytes); });
     Rgba16 picture{size, std::vector<std::uint16_t>(row_values * size.height)};
     if (bits == 16) {
         std::memcpy(picture.rgba.data(), rows.data(), rows.size());

@@ -13,10 +13,7 @@
 #include "base/parallel.h"
 #include "trace/caster.h"
 #include "trace/light_sample.h"
-
-#include <glm/ext/matrix_double3x3.hpp>
-#include <glm/ext/matrix_double4x4.hpp>
-#include <glm/matrix.hpp>
+#include "trace/pixel_rays.h"
 
 #include <algorithm>
 #include <array>
@@ -44,35 +41,6 @@ std::size_t tiles_along(unsigned pixels) {
 
 template <typename LightType>
 inline constexpr bool kDirectional = std::is_same_v<LightType, DirectionalLight>;
-
-/// Rays through the centres of a camera's pixels, in double.
-class PixelRays {
-public:
-    PixelRays(const Camera& camera, Extent size)
-        : world_from_view_(glm::inverse(glm::dmat4(camera.view_from_world))),
-          parallel_(camera.ortho_height_m > 0.0f),
-          half_height_(parallel_ ? 0.5 * camera.ortho_height_m : std::tan(0.5 * camera.fov_y_rad)),
-          size_(size) {}
-
-    struct Ray {
-        DVec3 origin_ws, direction_ws;  ///< of length 1 along the view axis: t is the view depth
-    };
-    Ray operator()(unsigned x, unsigned y) const {
-        const double side = 2.0 * half_height_ / size_.height;  // of a pixel, at view depth 1
-        const double right = (x + 0.5 - 0.5 * size_.width) * side;
-        const double up = (0.5 * size_.height - y - 0.5) * side;
-        const glm::dvec4 place(right, up, parallel_ ? 0.0 : -1.0, parallel_ ? 1.0 : 0.0);
-        const DVec3 in_world(world_from_view_ * place);
-        if (parallel_) return {in_world, -DVec3(world_from_view_[2])};
-        return {DVec3(world_from_view_[3]), in_world};
-    }
-
-private:
-    glm::dmat4 world_from_view_;
-    bool parallel_;
-    double half_height_;  ///< in metres if parallel, else at view depth 1
-    Extent size_;
-};
 
 /// Visibility of a light without extent at receivers, as many at a time as are traced together.
 template <typename LightType>
@@ -232,7 +200,7 @@ std::vector<Receiver> Tracer::receivers(const Camera& camera, Extent size,
             for (unsigned x = 0; x < size.width; ++x) {
                 const SurfaceId surface = surfaces[y * size.width + x];
                 if (surface.instance == kNoReceiver) continue;
-                const auto ray = pixel_rays(x, static_cast<unsigned>(y));
+                const auto ray = pixel_rays(x + 0.5, static_cast<double>(y) + 0.5);
                 receivers[y * size.width + x] = receiver_on(
                     world_triangle(scene_, surface), surface, ray.origin_ws, ray.direction_ws);
             }
@@ -295,7 +263,7 @@ std::vector<SurfaceId> Tracer::visible_surfaces(const Camera& camera, Extent siz
         [&](std::size_t first, std::size_t last) {
             for (std::size_t y = first; y < last; ++y) {
                 for (unsigned x = 0; x < size.width; ++x) {
-                    const auto ray = pixel_rays(x, static_cast<unsigned>(y));
+                    const auto ray = pixel_rays(x + 0.5, static_cast<double>(y) + 0.5);
                     surfaces[y * size.width + x] = caster_->first_seen(
                         Vec3(ray.origin_ws), Vec3(ray.direction_ws), camera.near_m, t_max);
                 }
