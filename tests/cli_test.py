@@ -436,6 +436,32 @@ class Sun(CliTest):
         self.assertEqual((self.folder / "hours" / "plan.txt").read_text(encoding="utf-8"), "mine")
 
 
+class Bake(CliTest):
+    SUN = ("--sun", "place=48.137,11.575,date=2026-06-21,steps=40")
+
+    def content(self, name="day"):
+        return {path.name: path.read_bytes() for path in (self.folder / name).iterdir()}
+
+    def test_full_disk_keeps_what_is_done(self):
+        # A limit on the size of files fails as a full disk does. scene.glb has a megabyte, the times
+        # of 8,000 texels a tenth of it.
+        limit = 400_000
+
+        def limited():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        def flags(name):
+            return ("bake", "courtyard", "--texel", 1, *self.SUN, "-o", self.folder / name)
+        self.assert_works(*flags("whole"))
+        kept = self.folder / "day.unfinished"
+        self.assert_fails(MACHINE, ["scene.glb", str(kept), "--resume"], *flags("day"), preexec_fn=limited)
+        self.assertEqual([name for name in self.files() if "day" in name], ["day.unfinished"])
+        self.assertGreater(kept.stat().st_size, 30_000)
+        self.assert_works(*flags("day"), "--resume")
+        self.assertEqual(self.content("day"), self.content("whole"))
+        self.assertFalse(kept.exists())
+
+
 class Interrupt(CliTest):
     COMPARE = ("compare", "courtyard", "--size", "1920x1080", "--reference-samples", "65536")
     SUN = ("sun", "courtyard", "--place", "48.137,11.575", "--year", "2026", "--minutes", "2", "--texel", "0.01")

@@ -100,13 +100,14 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
         for (const std::string& warning : bake.report.warnings)
             print_warning(warning);
         write_bake(flags.output, bake);
+        std::filesystem::remove(part, ignored);
         print(summary(bake, flags.output));
     } catch (const Error& error) {
         const bool is_kept = std::filesystem::exists(part, ignored);
-        if (error.kind() != ErrorKind::cancelled || !is_kept) throw;
-        throw Error(
-            ErrorKind::cancelled,
-            fmt::format("{}; what is done is kept: --resume goes on with it", error.what()));
+        if (error.kind() == ErrorKind::input || !is_kept) throw;
+        throw Error(error.kind(),
+                    fmt::format("{}; what is done is kept in {}: --resume goes on with it",
+                                error.what(), part.string()));
     }
 }
 

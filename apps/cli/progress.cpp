@@ -84,6 +84,7 @@ void install_signal_handlers() {
     handle_stop_signal(SIGINT);
     handle_stop_signal(SIGTERM);
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond its limit then fails as on a full disk
 }
 
 int stop_signal() {

@@ -35,7 +35,7 @@ BakePath bake_path(const SunPath& path, std::string place, std::string date);
 
 enum class BakeBits {
     eight = 8,     ///< exact to the step, of which there are at most 255
-    sixteen = 16,  ///< exact to a 64th of a step
+    sixteen = 16,  ///< exact to a 64th of a step: a second of 1023 steps of a day
 };
 
 /// The parts of a step that a code tells apart.
@@ -49,7 +49,8 @@ struct BakeOptions {
     int most_pairs = 4;  ///< of textures; each pair holds four intervals; 1 to 16
     bool ignore_alpha = false;
     std::uint64_t memory_limit_bytes = 0;  ///< 0 = the machine's memory
-    /// Where an interrupted bake keeps what it has, and finds it again; empty: nowhere.
+    /// Where a bake keeps what it has when it is interrupted, and when it is done: to be removed
+    /// once write_bake() has worked, because without it that begins here again. Empty: nowhere.
     std::filesystem::path resume_file;
 };
 
@@ -87,7 +88,8 @@ struct IntervalBake {
 
 /// Bakes on all threads; the result is the same for any number of them. Throws Error{input} for
 /// options out of range, for a scene without area or of more texels than fit in memory, saying what
-/// would; Error{cancelled}, after `resume_file` is written.
+/// would; Error{machine} when the disk of `resume_file` has no room for it; Error{cancelled}, after
+/// it is written.
 IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
                             Progress& progress);
 

@@ -126,16 +126,22 @@ TEST_F(BakeFiles, ReplaceNothingButABake) {
 TEST_F(BakeFiles, AnInterruptedBakeGoesOn) {
     const Scene scene = make_builtin_scene("courtyard");
     fs::create_directories(folder_);
-    const BakeOptions options{.texel_size_m = 0.15, .resume_file = folder_ / "part"};
+    const BakeOptions options{
+        .texel_size_m = 0.15, .bits = BakeBits::sixteen, .resume_file = folder_ / "part"};
     StopsAt stops(0.6);  // of several parts
     EXPECT_THROW(bake_intervals(scene, summer(64), options, stops), Error);
     ASSERT_TRUE(fs::exists(options.resume_file));
     EXPECT_THROW(bake_intervals(scene, summer(65), options, stops), Error);  // of another bake
+    BakeOptions other = options;
+    other.bits = BakeBits::eight;
+    EXPECT_THROW(bake_intervals(scene, summer(64), other, stops), Error);
     Progress silent;
     const IntervalBake resumed = bake_intervals(scene, summer(64), options, silent);
-    EXPECT_FALSE(fs::exists(options.resume_file));
-    expect_equal(resumed, bake_intervals(scene, summer(64),
-                                         {.texel_size_m = 0.15, .resume_file = {}}, silent));
+    StopsAt at_once(0.0);  // what is done is asked for no more
+    expect_equal(resumed, bake_intervals(scene, summer(64), options, at_once));
+    other = options;
+    other.resume_file.clear();
+    expect_equal(resumed, bake_intervals(scene, summer(64), other, silent));
 }
 
 TEST_F(BakeFiles, PolarNightIsNoBake) {

@@ -2,16 +2,13 @@
 
 #include "bake/baked_texels.h"
 #include "bake/buried.h"
-#include "bake/day_masks.h"
 #include "bake/interval_codes.h"
+#include "bake/lit_times.h"
 #include "bake/texel_receivers.h"
 #include "base/check.h"
-#include "base/parallel.h"
-#include "interval/mask.h"
 #include "lightmap/dilate.h"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 namespace gnomon {
@@ -36,32 +33,30 @@ void check(const BakePath& path, const BakeOptions& options) {
 
 /// When each texel sees the light, one after the other.
 struct TexelIntervals {
-    std::vector<std::vector<bake::CodedInterval>> texels;
+    std::vector<bake::LitTimes> texels;  ///< `most` intervals of each, at most
+    std::size_t most = 0;
     std::vector<bool> buried;  ///< of each texel: it is inside of a solid
     BakeReport report;
 };
 
-TexelIntervals coded(const interval::DayMasks& masks, std::size_t count, int codes_per_step,
-                     std::size_t most) {
-    TexelIntervals result;
-    result.texels.resize(count);
+/// Closes gaps until the texels have at most `allowed` intervals each, and counts.
+TexelIntervals limited(std::vector<bake::LitTimes> times, int path_codes, std::size_t allowed) {
+    TexelIntervals result{.texels = std::move(times), .buried = {}, .report = {}};
+    BakeReport& report = result.report;
     std::uint64_t closed = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        std::vector<bake::CodedInterval>& texel = result.texels[i];
-        for (const interval::Interval& lit : interval::intervals(masks.mask(i))) {
-            texel.push_back({static_cast<std::uint16_t>(lit.rise * codes_per_step),
-                             static_cast<std::uint16_t>(lit.fall * codes_per_step)});
-        }
-        BakeReport& report = result.report;
+    std::size_t most = 0;
+    for (bake::LitTimes& texel : result.texels) {
         report.lit_texels += texel.empty() ? 0 : 1;
         report.intervals += texel.size();
-        report.most_intervals = std::max(report.most_intervals, static_cast<int>(texel.size()));
-        if (texel.size() > most) report.closed_gaps += texel.size() - most;
-        closed += bake::close_gaps(texel, most);
+        most = std::max(most, texel.size());
+        if (texel.size() > allowed) report.closed_gaps += texel.size() - allowed;
+        closed += bake::close_gaps(texel, allowed);
     }
-    result.report.texels = count;
-    const double all = static_cast<double>(count) * masks.steps * codes_per_step;
-    result.report.closed_share = all > 0.0 ? static_cast<double>(closed) / all : 0.0;
+    report.most_intervals = static_cast<int>(most);
+    result.most = std::min(most, allowed);
+    report.texels = result.texels.size();
+    const double all = static_cast<double>(report.texels) * path_codes;
+    report.closed_share = all > 0.0 ? static_cast<double>(closed) / all : 0.0;
     return result;
 }
 
@@ -96,7 +91,7 @@ std::size_t value_index(const IntervalPage& page, std::size_t texel, std::size_t
            interval % kIntervalsPerPair;
 }
 
-void put(IntervalPage& page, std::size_t texel, const std::vector<bake::CodedInterval>& intervals) {
+void put(IntervalPage& page, std::size_t texel, const bake::LitTimes& intervals) {
     for (std::size_t i = 0; i < intervals.size(); ++i) {
         page.rises[value_index(page, texel, i)] = intervals[i].rise;
         page.falls[value_index(page, texel, i)] = intervals[i].fall;
@@ -132,10 +127,8 @@ std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const lightmap:
     constexpr std::uint32_t kNone = lightmap::kNoTexel;
     std::vector<IntervalPage> pages;
     std::vector<std::vector<std::uint32_t>> owner;  // the texel of each place
-    std::size_t used = 1;
-    for (const auto& texel : intervals.texels)
-        used = std::max(used, texel.size());
-    const int pairs = static_cast<int>((used + kIntervalsPerPair - 1) / kIntervalsPerPair);
+    const std::size_t most = std::max<std::size_t>(intervals.most, 1);
+    const int pairs = static_cast<int>((most + kIntervalsPerPair - 1) / kIntervalsPerPair);
     for (const unsigned side : atlas.page_sides_texels) {
         pages.push_back(blank_page(side, pairs));
         owner.emplace_back(std::size_t{side} * side, kNone);
@@ -159,30 +152,6 @@ std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const lightmap:
 
 }  // namespace
 
-BakePath bake_path(const SunPath& path, std::string place, std::string date) {
-    BakePath result;
-    result.pole_ws = path.pole_ws;
-    result.place = std::move(place);
-    result.date = std::move(date);
-    result.summary = path.summary;
-    if (path.steps.empty()) return result;
-    for (const SunStep& step : path.steps)
-        result.to_light_ws.push_back(step.to_sun_ws);
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-    result.angular_diameter_rad = kRadPerDeg * path.noon_sun.angular_diameter_deg;
-    const auto clock_s = [&](const CivilTime& time) {
-        const auto local = time.utc + time.utc_offset;
-        const auto noon_local = path.noon.utc + path.noon.utc_offset;
-        const auto midnight = std::chrono::floor<std::chrono::days>(noon_local);
-        return std::chrono::duration<double>(local - midnight).count();
-    };
-    const double first_s = clock_s(path.steps.front().time);
-    const double half_s = 0.5 * path.times.daylight_s / static_cast<double>(path.steps.size());
-    result.begin_s = first_s - half_s;
-    result.end_s = result.begin_s + path.times.daylight_s;
-    return result;
-}
-
 namespace bake {
 
 BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOptions& options,
@@ -195,15 +164,10 @@ BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOpt
         progress);
     const lightmap::Texels texels = lightmap::make_texels(scene, baked.atlas, progress);
     const std::vector<trace::Receiver> receivers = texel_receivers(baked.atlas, texels);
-    const interval::Frame frame = interval::frame_around(path.pole_ws);
-    const interval::DayPath day(path.to_light_ws, frame);
-    const interval::Tree tree(scene, frame, options.ignore_alpha, progress);
-    const interval::DayMasks masks =
-        day_masks(tree, day, receivers, options.resume_file,
-                  fingerprint(scene, day, options.ignore_alpha, receivers), progress);
     TexelIntervals intervals =
-        coded(masks, receivers.size(), codes_per_step(options.bits),
-              kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs));
+        limited(lit_times(scene, path, options, receivers, progress),
+                path.steps() * codes_per_step(options.bits),
+                kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs));
     find_buried(scene, path, receivers, intervals, progress);
     baked.pages = pages_of(baked.atlas, texels, intervals);
     baked.report = std::move(intervals.report);

@@ -17,7 +17,7 @@ double disc_before(double x) {
 
 }  // namespace
 
-std::uint64_t close_gaps(std::vector<CodedInterval>& intervals, std::size_t most) {
+std::uint64_t close_gaps(LitTimes& intervals, std::size_t most) {
     if (intervals.size() <= most) return 0;
     const auto gap = [&](std::size_t i) { return intervals[i + 1].rise - intervals[i].fall; };
     std::vector<std::size_t> shortest(intervals.size() - 1);
@@ -30,7 +30,7 @@ std::uint64_t close_gaps(std::vector<CodedInterval>& intervals, std::size_t most
         closes[i] = true;
         closed += static_cast<std::uint64_t>(gap(i));
     }
-    std::vector<CodedInterval> joined{intervals.front()};
+    LitTimes joined{intervals.front()};
     for (std::size_t i = 1; i < intervals.size(); ++i) {
         if (closes[i - 1]) {
             joined.back().fall = intervals[i].fall;

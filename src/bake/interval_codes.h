@@ -11,9 +11,12 @@ struct CodedInterval {
     bool operator==(const CodedInterval&) const = default;
 };
 
+/// Of one texel, in order of time; they do not touch.
+using LitTimes = std::vector<CodedInterval>;
+
 /// Joins neighbours, over the shortest gaps first, until there are at most `most` of them. Returns
-/// the codes that were dark and are now lit. Intervals are in order of time and do not touch.
-std::uint64_t close_gaps(std::vector<CodedInterval>& intervals, std::size_t most);
+/// the codes that were dark and are now lit.
+std::uint64_t close_gaps(LitTimes& intervals, std::size_t most);
 
 /// The part of a window of `width` around `at` that lies in [rise, fall): each moment counts alike
 /// when `even`, else as much as a disc that covers the window is high there. In [0, 1].

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <gnomon/bake.h>
+
+#include "bake/interval_codes.h"
+#include "trace/receiver.h"
+#include "trace/tracer.h"
+
+#include <span>
+#include <vector>
+
+namespace gnomon::bake {
+
+/// Finds when between two steps the light rises or falls at a receiver: to the 64th of a step.
+class ExactTimes {
+public:
+    static constexpr int kParts = codes_per_step(BakeBits::sixteen);
+
+    /// Keeps the scene alive. Throws Error{machine} when memory runs out, Error{cancelled}.
+    ExactTimes(const Scene& scene, std::span<const DVec3> to_light_ws, bool ignore_alpha,
+               Progress& progress);
+
+    /// `times` of each receiver: in, intervals in codes that are whole steps, as the directions in
+    /// the middle of steps find them; out, of which each change has moved by up to half a step to
+    /// where rays find it, after a bisection. What is seen nowhere but in the middle of a step is
+    /// left out, and where there is more than one change between two middles one of them is told.
+    /// Depends on a receiver and its times alone. Throws Error{cancelled}.
+    void refine(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
+                Progress& progress) const;
+
+private:
+    struct Search;
+    std::vector<Search> searches_of(std::span<const LitTimes> times) const;
+    void search(std::span<const trace::Receiver> receivers, std::span<Search> searches) const;
+
+    trace::Tracer tracer_;
+    std::vector<DVec3> to_light_ws_;  ///< of each part of each step
+    int steps_;
+};
+
+}  // namespace gnomon::bake

@@ -1,0 +1,224 @@
+#include "bake/exact_times.h"
+
+#include <gnomon/sun.h>
+
+#include "bake/fine_path.h"
+#include "bake/lit_times.h"
+#include "bake/thread_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace gnomon::bake {
+namespace {
+
+using namespace std::chrono;
+using trace::Receiver;
+
+constexpr Place kMunich{48.137, 11.575, 520.0};
+constexpr minutes kOffset(60);
+constexpr int kMostSteps = 1023;
+
+SunPath sun_of(year_month_day date, int steps) {
+    SunPathOptions options;
+    options.steps = steps;
+    return sun_path(kMunich, date, kOffset, options);
+}
+
+/// The sun at a time after midnight, to the millisecond, from the almanac itself.
+DVec3 to_sun_at(year_month_day date, double time_s) {
+    const milliseconds since_midnight(std::llround(1000.0 * time_s));
+    const SunPosition sun = sun_position(kMunich, civil_time(date, since_midnight, kOffset));
+    return sky_direction_ws(sun.azimuth_deg, sun.elevation_deg);
+}
+
+struct Box {
+    DVec3 low, high;
+
+    /// Whether a ray meets it.
+    bool blocks(DVec3 origin, DVec3 direction) const {
+        double first = 0.0, last = INFINITY;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double a = (low[axis] - origin[axis]) / direction[axis];
+            const double b = (high[axis] - origin[axis]) / direction[axis];
+            first = std::max(first, std::min(a, b));
+            last = std::min(last, std::max(a, b));
+        }
+        return first < last;
+    }
+};
+
+// A pole and a wall, which cast on the floor around them.
+constexpr std::array<Box, 2> kBoxes = {Box{{-0.0625, 0.0, -0.0625}, {0.0625, 4.0, 0.0625}},
+                                       Box{{2.0, 0.0, -1.5}, {2.25, 1.5, 1.5}}};
+
+Scene boxes() {
+    Mesh mesh;
+    for (const Box& box : kBoxes) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (unsigned i = 0; i < 8; ++i) {
+            mesh.positions.emplace_back((i & 1) != 0 ? box.high.x : box.low.x,
+                                        (i & 2) != 0 ? box.high.y : box.low.y,
+                                        (i & 4) != 0 ? box.high.z : box.low.z);
+        }
+        for (const UVec3 t : {UVec3(0, 1, 3), UVec3(0, 3, 2), UVec3(4, 7, 5), UVec3(4, 6, 7),
+                              UVec3(0, 4, 5), UVec3(0, 5, 1), UVec3(2, 3, 7), UVec3(2, 7, 6),
+                              UVec3(0, 2, 6), UVec3(0, 6, 4), UVec3(1, 5, 7), UVec3(1, 7, 3)})
+            mesh.triangles.push_back(t + first);
+    }
+    SceneData data;
+    data.materials.emplace_back();
+    data.meshes.push_back(mesh);
+    data.instances.emplace_back();
+    return Scene(std::move(data));
+}
+
+/// Points of the floor around both.
+std::vector<Receiver> floor_points() {
+    std::vector<Receiver> points;
+    for (int i = 0; i < 12; ++i) {
+        for (int j = 0; j < 9; ++j) {
+            const Vec3 place(-1.7f + 0.41f * static_cast<float>(i), 0.0f,
+                             -1.9f + 0.43f * static_cast<float>(j));
+            points.push_back({place, {0.0f, 1.0f, 0.0f}, {trace::kNoSurface, 0}});
+        }
+    }
+    return points;
+}
+
+/// When a point of the floor sees the sun, by bisection of the almanac, seconds since midnight.
+class Truth {
+public:
+    Truth(year_month_day date, double begin_s, double end_s) : date_(date) {
+        constexpr double kScan_s = 20.0;  // the boxes are seen for a minute or more
+        const auto count = static_cast<int>((end_s - begin_s) / kScan_s);
+        for (int i = 0; i <= count; ++i) {
+            times_s_.push_back(begin_s + (end_s - begin_s) * i / count);
+            to_sun_.push_back(to_sun_at(date, times_s_.back()));
+        }
+    }
+
+    std::vector<double> changes_s(DVec3 point) const {
+        std::vector<double> changes;
+        for (std::size_t i = 1; i < times_s_.size(); ++i) {
+            const bool before = is_lit(point, to_sun_[i - 1]);
+            if (before == is_lit(point, to_sun_[i])) continue;
+            double low = times_s_[i - 1], high = times_s_[i];
+            while (high - low > 0.002) {
+                const double middle = 0.5 * (low + high);
+                (is_lit(point, to_sun_at(date_, middle)) == before ? low : high) = middle;
+            }
+            changes.push_back(0.5 * (low + high));
+        }
+        return changes;
+    }
+
+private:
+    static bool is_lit(DVec3 point, DVec3 to_sun) {
+        return std::ranges::none_of(kBoxes,
+                                    [&](const Box& box) { return box.blocks(point, to_sun); });
+    }
+
+    year_month_day date_;
+    std::vector<double> times_s_;
+    std::vector<DVec3> to_sun_;
+};
+
+class ExactTimesOfBoxes : public testing::TestWithParam<year_month_day> {};
+
+// A change is found to half of what is stored, 0.44 s at most with the most steps: within a second.
+TEST_P(ExactTimesOfBoxes, AreThoseOfTheAlmanac) {
+    const BakePath path = bake_path(sun_of(GetParam(), kMostSteps), "", "");
+    const std::vector<Receiver> points = floor_points();
+    Progress silent;
+    const std::vector<LitTimes> times =
+        lit_times(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = {}}, points, silent);
+    const double codes = kMostSteps * ExactTimes::kParts;
+    const double code_s = (path.end_s - path.begin_s) / codes;
+    // Float coordinates of some metres, and the almanac's milliseconds.
+    constexpr double kRounding_s = 0.03;
+    ASSERT_LT(0.5 * code_s + kRounding_s, 1.0);
+    const Truth truth(GetParam(), path.begin_s, path.end_s);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::vector<double> found_s;
+        for (const CodedInterval& lit : times[i]) {
+            if (lit.rise > 0) found_s.push_back(path.begin_s + lit.rise * code_s);
+            if (lit.fall < codes) found_s.push_back(path.begin_s + lit.fall * code_s);
+        }
+        const std::vector<double> changes_s = truth.changes_s(DVec3(points[i].position_ws));
+        ASSERT_EQ(found_s.size(), changes_s.size()) << "point " << i;
+        for (std::size_t k = 0; k < changes_s.size(); ++k)
+            EXPECT_NEAR(found_s[k], changes_s[k], 0.5 * code_s + kRounding_s) << "point " << i;
+        compared += changes_s.size();
+    }
+    EXPECT_GT(compared, points.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Days, ExactTimesOfBoxes,
+                         testing::Values(2026y / June / 21, 2026y / December / 21));
+
+TEST(ExactTimes, AreTheSameOnAnyNumberOfThreads) {
+    const BakePath path = bake_path(sun_of(2026y / March / 21, 100), "", "");
+    const std::vector<Receiver> points = floor_points();
+    const BakeOptions options{.bits = BakeBits::sixteen, .resume_file = {}};
+    Progress silent;
+    const std::vector<LitTimes> all = lit_times(boxes(), path, options, points, silent);
+    const ThreadLimit one(1);
+    EXPECT_EQ(lit_times(boxes(), path, options, points, silent), all);
+    EXPECT_EQ(lit_times(boxes(), path, options, std::span(points).subspan(7, 20), silent),
+              std::vector(all.begin() + 7, all.begin() + 27));
+}
+
+// What 8 bits tell is at most half a step from it.
+TEST(ExactTimes, StayWithinTheirStep) {
+    const BakePath path = bake_path(sun_of(2026y / March / 21, 200), "", "");
+    const std::vector<Receiver> points = floor_points();
+    Progress silent;
+    const auto steps = lit_times(boxes(), path, {.resume_file = {}}, points, silent);
+    const auto exact =
+        lit_times(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = {}}, points, silent);
+    int moved = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_EQ(steps[i].size(), exact[i].size());
+        for (std::size_t k = 0; k < steps[i].size(); ++k) {
+            const int rise = exact[i][k].rise - ExactTimes::kParts * steps[i][k].rise;
+            const int fall = exact[i][k].fall - ExactTimes::kParts * steps[i][k].fall;
+            EXPECT_LE(std::max(std::abs(rise), std::abs(fall)), ExactTimes::kParts / 2);
+            moved += (rise != 0 ? 1 : 0) + (fall != 0 ? 1 : 0);
+        }
+    }
+    EXPECT_GT(moved, 100);
+}
+
+// The sun goes 7e-5 rad a second: what is stored is never coarser than this errs.
+TEST(FinePath, IsTheAlmanacsBetweenItsSteps) {
+    for (const auto& [steps, tolerance_rad] : {std::pair{1023, 1e-7}, {255, 1e-7}, {24, 5e-5}}) {
+        const auto date = 2026y / March / 21;
+        const BakePath path = bake_path(sun_of(date, steps), "", "");
+        const std::vector<DVec3> fine = fine_path(path.to_light_ws, 8);
+        ASSERT_EQ(fine.size(), std::size_t{8} * path.to_light_ws.size());
+        double greatest_rad = 0.0;
+        for (std::size_t i = 0; i < fine.size(); ++i) {
+            const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(fine.size());
+            const double time_s = path.begin_s + part * (path.end_s - path.begin_s);
+            greatest_rad = std::max(greatest_rad, glm::length(fine[i] - to_sun_at(date, time_s)));
+        }
+        EXPECT_LT(greatest_rad, tolerance_rad) << steps;
+    }
+}
+
+TEST(FinePath, OfFewStepsIsStraight) {
+    const std::vector<DVec3> one{{0.0, 1.0, 0.0}};
+    EXPECT_EQ(fine_path(one, 2), (std::vector<DVec3>{one[0], one[0]}));
+    const std::vector<DVec3> two{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    const std::vector<DVec3> fine = fine_path(two, 1);
+    EXPECT_EQ(fine, two);
+}
+
+}  // namespace
+}  // namespace gnomon::bake

@@ -1,0 +1,144 @@
+#include "bake/unfinished.h"
+
+#include "base/check.h"
+#include "base/file.h"
+
+#include <array>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace gnomon::bake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the file takes for a texel of some intervals: with less free the work is not begun.
+constexpr std::uint64_t kTexel_bytes = 16;
+
+/// The beginning of the file. The number of intervals of each texel follows, then the intervals.
+struct Header {
+    std::array<char, 16> magic{"gnomon part 2\n"};
+    std::uint64_t fingerprint = 0;
+    std::uint64_t texels = 0;     ///< that are done
+    std::uint64_t intervals = 0;  ///< of all of them
+};
+
+using Count = std::uint16_t;
+
+std::uint64_t file_bytes(const Header& header) {
+    return sizeof header + header.texels * sizeof(Count) + header.intervals * sizeof(CodedInterval);
+}
+
+template <typename T>
+void append(std::string& bytes, std::span<const T> values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+class Hash {
+public:
+    template <typename T>
+    void add(std::span<const T> values) {
+        for (const std::byte byte : std::as_bytes(values)) {
+            value_ ^= static_cast<std::uint64_t>(byte);
+            value_ *= 0x100000001b3;
+        }
+    }
+    std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_ = 0xcbf29ce484222325;
+};
+
+}  // namespace
+
+Unfinished::Unfinished(fs::path file, std::uint64_t fingerprint, std::size_t texels)
+    : file_(std::move(file)), fingerprint_(fingerprint), texels_(texels) {
+    if (file_.empty()) return;
+    std::error_code error;
+    const fs::space_info space = fs::space(fs::absolute(file_).parent_path(), error);
+    const std::uint64_t needed = kTexel_bytes * texels_;
+    if (error || space.available >= needed || fs::exists(file_, error)) return;
+    fail_machine(
+        "{}: the disk has {} bytes free; this bake of {} texels needs {}: make room, or "
+        "choose larger texels",
+        file_.string(), space.available, texels_, needed);
+}
+
+std::vector<LitTimes> Unfinished::load() const {
+    std::error_code error;
+    if (file_.empty() || !fs::exists(file_, error)) return {};
+    constexpr std::uint64_t kMostIntervals = 512;  // of a texel: every other step of 1023
+    const std::vector<std::uint8_t> bytes =
+        read_file(file_, file_bytes({.texels = texels_, .intervals = texels_ * kMostIntervals}));
+    Header header;
+    if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
+    bool is_ours = bytes.size() >= sizeof header && header.magic == Header().magic &&
+                   header.fingerprint == fingerprint_ && header.texels <= texels_ &&
+                   header.intervals <= texels_ * kMostIntervals &&
+                   bytes.size() == file_bytes(header);
+    std::vector<LitTimes> times(is_ours ? header.texels : 0);
+    const std::uint8_t* count_at = bytes.data() + sizeof header;
+    const std::uint8_t* at = count_at + times.size() * sizeof(Count);
+    std::uint64_t left = header.intervals;
+    for (LitTimes& of_texel : times) {
+        Count count = 0;
+        std::memcpy(&count, count_at, sizeof count);
+        count_at += sizeof count;
+        is_ours = is_ours && count <= left;
+        if (!is_ours) break;
+        left -= count;
+        of_texel.resize(count);
+        std::memcpy(of_texel.data(), at, count * sizeof(CodedInterval));
+        at += count * sizeof(CodedInterval);
+    }
+    if (!is_ours || left != 0) {
+        fail_input(
+            "{}: holds parts of another bake, or is damaged: remove it, or go on with the "
+            "scene and the flags that it was begun with",
+            file_.string());
+    }
+    return times;
+}
+
+void Unfinished::save(std::span<const LitTimes> times) const {
+    if (file_.empty() || times.empty()) return;
+    Header header{.fingerprint = fingerprint_, .texels = times.size()};
+    for (const LitTimes& of_texel : times)
+        header.intervals += of_texel.size();
+    std::string bytes;
+    bytes.reserve(file_bytes(header));
+    append(bytes, std::span<const Header>(&header, 1));
+    for (const LitTimes& of_texel : times) {
+        const auto count = static_cast<Count>(of_texel.size());
+        append(bytes, std::span<const Count>(&count, 1));
+    }
+    for (const LitTimes& of_texel : times)
+        append(bytes, std::span<const CodedInterval>(of_texel));
+    write_file(file_, bytes);
+}
+
+std::uint64_t fingerprint(const Scene& scene, const BakePath& path, const BakeOptions& options,
+                          std::span<const trace::Receiver> receivers) {
+    Hash hash;
+    for (const Mesh& mesh : scene.meshes()) {
+        hash.add(std::span(mesh.positions));
+        hash.add(std::span(mesh.triangles));
+        hash.add(std::span(mesh.texcoords));
+    }
+    for (const Instance& instance : scene.instances())
+        hash.add(std::span(&instance.world_from_local, 1));
+    if (!options.ignore_alpha) {
+        for (const Texture& texture : scene.textures())
+            hash.add(std::span(texture.rgba));
+    }
+    hash.add(std::span(path.to_light_ws));
+    hash.add(std::span(&options.bits, 1));
+    for (const trace::Receiver& receiver : receivers)
+        hash.add(std::span(&receiver.position_ws, 1));
+    return hash.value();
+}
+
+}  // namespace gnomon::bake

@@ -1,0 +1,60 @@
+#include "bake/unfinished.h"
+
+#include <gnomon/error.h>
+
+#include "base/file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
+
+namespace gnomon::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+class UnfinishedBake : public testing::Test {
+protected:
+    void TearDown() override { fs::remove(file_); }
+
+    fs::path file_ =
+        fs::temp_directory_path() / ("gnomon_unfinished_" + std::to_string(::getpid()));
+    const std::vector<LitTimes> times_{{{0, 10}, {20, 65472}}, {}, {{5, 6}}};
+};
+
+TEST_F(UnfinishedBake, IsReadAsItWasWritten) {
+    const Unfinished unfinished(file_, 7, 5);
+    EXPECT_TRUE(unfinished.load().empty());
+    unfinished.save(times_);
+    EXPECT_EQ(unfinished.load(), times_);
+    EXPECT_THROW(Unfinished(file_, 8, 5).load(), Error);  // another bake
+    EXPECT_THROW(Unfinished(file_, 7, 2).load(), Error);
+}
+
+TEST_F(UnfinishedBake, DamagedOnesAreErrors) {
+    const Unfinished unfinished(file_, 7, 5);
+    unfinished.save(times_);
+    const std::vector<std::uint8_t> whole = read_file(file_, 1 << 10);
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        write_file(file_, std::string(whole.begin(), whole.begin() + static_cast<long>(length)));
+        EXPECT_THROW(unfinished.load(), Error) << length;
+    }
+    std::string other(whole.begin(), whole.end());
+    other[40] = 3;  // of the first texel's two intervals
+    write_file(file_, other);
+    EXPECT_THROW(unfinished.load(), Error);
+}
+
+TEST_F(UnfinishedBake, ADiskWithoutRoomIsToldBeforeTheWork) {
+    try {
+        const Unfinished unfinished(file_, 7, std::size_t{1} << 56);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::machine);
+    }
+    EXPECT_NO_THROW(Unfinished({}, 7, std::size_t{1} << 56));
+}
+
+}  // namespace
+}  // namespace gnomon::bake
