@@ -435,6 +435,17 @@ class Sun(CliTest):
         self.sun(*self.DAY, "--texel", 0.5)
         self.assertEqual((self.folder / "hours" / "plan.txt").read_text(encoding="utf-8"), "mine")
 
+    def test_pages_of_an_earlier_run_go(self):
+        (self.folder / "hours").mkdir()
+        mine = ["hours.old.exr", "hours.1.png", "north_hours.exr"]
+        for name in [*mine, "hours.0.exr", "hours.12.exr"]:
+            (self.folder / "hours" / name).write_text("earlier", encoding="utf-8")
+        self.sun(*self.DAY, "--texel", 0.5)
+        pages = [name for name in self.files() if name.endswith((".exr", "1.png"))]
+        self.assertEqual(pages, sorted(f"hours/{name}" for name in [*mine, "hours.exr"]))
+        self.sun(*self.DAY, "--grid", 1)  # has no pages
+        self.assertNotIn("hours/hours.exr", self.files())
+
 
 class Bake(CliTest):
     SUN = ("--sun", "place=48.137,11.575,date=2026-06-21,steps=40")

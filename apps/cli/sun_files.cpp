@@ -6,9 +6,45 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <string_view>
+#include <system_error>
 
 namespace gnomon::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "hours.exr", or "hours.12.exr".
+bool is_page(std::string_view name) {
+    constexpr std::string_view kStem = "hours", kExtension = ".exr";
+    if (!name.starts_with(kStem) || !name.ends_with(kExtension)) return false;
+    name.remove_prefix(kStem.size());
+    if (name == kExtension) return true;
+    name.remove_suffix(kExtension.size());
+    return name.size() > 1 && name.front() == '.' &&
+           std::ranges::all_of(name.substr(1), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Removes the pages that an earlier run with other texels has left.
+void remove_other_pages(const fs::path& folder, const std::string& prefix,
+                        const std::vector<fs::path>& written) {
+    std::error_code error;
+    std::vector<fs::path> others;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(prefix) && is_page(std::string_view(name).substr(prefix.size())) &&
+            std::ranges::find(written, folder / name) == written.end()) {
+            others.push_back(entry.path());
+        }
+    }
+    for (const fs::path& other : others)
+        fs::remove(other, error);
+}
+
+}  // namespace
 
 std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) {
     const bool texels = result.kind == SunPoints::texels;
@@ -60,6 +96,7 @@ std::vector<std::filesystem::path> write_sun_hours(const std::filesystem::path& 
     }
     write_png(path("top.png"), top);
     write_png(path("view.png"), view);
+    remove_other_pages(folder, prefix, paths);
     return paths;
 }
 
