@@ -449,9 +449,45 @@ class Sun(CliTest):
 
 class Bake(CliTest):
     SUN = ("--sun", "place=48.137,11.575,date=2026-06-21,steps=40")
+    SWEEP = {"kind": "direction", "keys": [{"time": 0, "value": [-1, 0.5, 0]}, {"time": 8, "value": [0, 1, 0]},
+                                           {"time": 30, "value": [1, 1, 1]}]}
+
+    def bake(self, *flags, **options):
+        return self.assert_works("bake", "cube", "--texel", 0.25, *flags, "-o", self.folder / "day", **options)
 
     def content(self, name="day"):
         return {path.name: path.read_bytes() for path in (self.folder / name).iterdir()}
+
+    def light(self, content):
+        path = self.folder / "sweep.json"
+        path.write_text(json.dumps(content), encoding="utf-8")
+        return path
+
+    def test_light_path(self):
+        told = self.bake("--light", f"path={self.light(self.SWEEP)},diameter=2,steps=60", "--bits", 16)
+        self.assertIn("light path of 3 keys", told)
+        path = json.loads(self.content()["bake.json"])["path"]
+        self.assertEqual((path["begin_s"], path["end_s"], path["place"]), (0, 30, ""))
+        self.assertAlmostEqual(path["angular_diameter_rad"], 0.0349066, places=6)
+        self.assertEqual(len(path["to_light_ws"]), 60)
+        middle = path["to_light_ws"][16]  # of step 16: 8.25 s, just past the key overhead
+        self.assertGreater(middle[1], 0.999)
+
+    def test_what_is_missing_or_wrong(self):
+        def fails(words, *flags):
+            self.assert_fails(INPUT, words, "bake", "cube", *flags, "-o", self.folder / "day")
+        light = f"path={self.light(self.SWEEP)}"
+        fails(["--sun", "--light"])
+        fails(["--sun and --light are both given"], *self.SUN, "--light", light)
+        fails(["--light", "path"], "--light", "steps=4")
+        fails(["--light", "steps", "300", "255"], "--light", f"{light},steps=300")
+        fails(["diameter", "-1", "0 to 180"], "--light", f"{light},diameter=-1")
+        fails(["nowhere.json"], "--light", "path=nowhere.json")
+        lamp = {"kind": "position", "keys": self.SWEEP["keys"]}
+        fails(["sweep.json", "positions"], "--light", f"path={self.light(lamp)}")
+        fails(["sweep.json", "one key"], "--light",
+              f"path={self.light({**self.SWEEP, 'keys': self.SWEEP['keys'][:1]})}")
+        self.assertEqual(self.files(), ["sweep.json"])
 
     def test_full_disk_keeps_what_is_done(self):
         # A limit on the size of files fails as a full disk does. scene.glb has a megabyte, the times

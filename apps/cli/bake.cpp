@@ -12,6 +12,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 namespace gnomon::cli {
 
@@ -21,16 +22,19 @@ constexpr const char* kExamples = R"(Examples:
   gnomon bake courtyard --sun place=48.137,11.575,date=2026-06-21 --texel 0.1 -o day
   gnomon bake city.glb --sun place=52,4.36,date=2026-12-21,utc=+01:00,north=-30 --bits 16 -o winter
   gnomon bake city.glb --sun place=52.0,4.36,date=2026-12-21 --texel 0.25 -o winter --resume
+  gnomon bake stage.glb --light path=sweep.json,diameter=2 --texel 0.05 -o sweep
 
 --sun takes place=LATITUDE,LONGITUDE[,HEIGHT] and date=YEAR-MONTH-DAY, and may take utc=OFFSET (the
 clock; else the whole hour nearest to the sun's own time), north=DEGREES (the azimuth of true north
-in the scene) and steps=N. gnomon web makes a page of a bake.)";
+in the scene) and steps=N. --light takes path=FILE.json, key frames of directions as docs/sun.md
+tells, and may take diameter=DEGREES (of the disc, default 0) and steps=N. gnomon web makes a page
+of a bake.)";
 
 constexpr int kSteps8 = 255;
 constexpr int kSteps16 = 1023;
 
 struct BakeFlags {
-    std::string scene, sun, output;
+    std::string scene, sun, light, output;
     double texel_m = 0.1;
     int bits = 8;
     int pairs = 4;
@@ -38,24 +42,42 @@ struct BakeFlags {
     bool ignore_alpha = false;
 };
 
-BakePath path_of(const BakeFlags& flags) {
+/// As many as the bits allow, unless told.
+int steps_of(const KeyValues& values, int bits) {
+    const int most = bits == 8 ? kSteps8 : kSteps16;
+    if (!values.has("steps")) return most;
+    return static_cast<int>(parse_integer(values.label("steps"), values.text("steps", ""),
+                                          {1, static_cast<double>(most)}));
+}
+
+BakePath sun_path_of(const BakeFlags& flags) {
     constexpr std::array<Key, 5> kKeys{
         {{"place", true}, {"date", true}, {"utc"}, {"north"}, {"steps"}}};
     const KeyValues sun("--sun", flags.sun, kKeys, "place=48.137,11.575,date=2026-06-21");
     const Place place = parse_place(sun.label("place"), sun.text("place", ""));
     const auto date = parse_date(sun.label("date"), sun.text("date", ""));
-    const int most_steps = flags.bits == 8 ? kSteps8 : kSteps16;
     SunPathOptions options;
-    options.steps =
-        static_cast<int>(sun.has("steps") ? parse_integer(sun.label("steps"), sun.text("steps", ""),
-                                                          {1, static_cast<double>(most_steps)})
-                                          : most_steps);
+    options.steps = steps_of(sun, flags.bits);
     options.frame.north_deg = sun.number("north", {-360.0, 360.0, "degrees"}, 0.0);
     const std::chrono::minutes offset =
         sun.has("utc") ? parse_utc_offset(sun.label("utc"), sun.text("utc", ""))
                        : nearest_utc_offset(place);
     return bake_path(sun_path(place, date, offset, options), sun.text("place", ""),
                      sun.text("date", ""));
+}
+
+BakePath light_path_of(const BakeFlags& flags) {
+    constexpr std::array<Key, 3> kKeys{{{"path", true}, {"diameter"}, {"steps"}}};
+    const KeyValues light("--light", flags.light, kKeys, "path=sweep.json");
+    const double diameter_deg = light.number("diameter", {0.0, 180.0, "degrees"}, 0.0);
+    const int steps = steps_of(light, flags.bits);
+    const std::string file = light.text("path", "");
+    const LightPath path = read_light_path(file);
+    try {
+        return bake_path(path, steps, std::numbers::pi / 180.0 * diameter_deg);
+    } catch (const Error& error) {
+        fail_usage("{}: {}", file, error.what());
+    }
 }
 
 std::string summary(const IntervalBake& bake, const std::string& folder) {
@@ -74,13 +96,18 @@ std::string summary(const IntervalBake& bake, const std::string& folder) {
 
 void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& progress) {
     if (flags.scene.empty()) fail_usage("bake: SCENE is missing");
-    if (flags.sun.empty())
-        fail_usage("bake: --sun is missing, as in --sun place=48.137,11.575,date=2026-06-21");
+    if (flags.sun.empty() && flags.light.empty()) {
+        fail_usage(
+            "bake: --sun is missing, as in --sun place=48.137,11.575,date=2026-06-21, or --light "
+            "path=FILE.json");
+    }
+    if (!flags.sun.empty() && !flags.light.empty())
+        fail_usage("bake: --sun and --light are both given; a bake has one light");
     if (flags.output.empty()) fail_usage("bake: -o is missing, as in -o day");
     if (flags.bits != 8 && flags.bits != 16)
         fail_usage("--bits: {}; it must be 8 or 16", flags.bits);
     check_bake_folder(flags.output);
-    const BakePath path = path_of(flags);
+    const BakePath path = flags.light.empty() ? sun_path_of(flags) : light_path_of(flags);
     if (path.steps() == 0) {
         print(fmt::format("{}\nno sun, no bake\n", path.summary));
         return;
@@ -121,6 +148,9 @@ Command add_bake(CLI::App& program) {
     app->add_option("SCENE", flags->scene, "a .gltf, .glb or .obj file, or a built-in scene");
     app->add_option("--sun", flags->sun, "place=..,date=..[,utc=..][,north=..][,steps=..]")
         ->type_name("WHERE,WHEN");
+    app->add_option("--light", flags->light,
+                    "path=FILE.json[,diameter=..][,steps=..]: another light, by key frames")
+        ->type_name("PATH");
     add_number(*app, "--texel", flags->texel_m, {1e-6, 1e6}, "side of a texel, metres");
     add_integer(*app, "--bits", flags->bits, {8, 16}, "of a time: 8, or 16");
     add_integer(*app, "--pairs", flags->pairs, {1, 16},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gnomon/light_path.h>
 #include <gnomon/math.h>
 #include <gnomon/progress.h>
 #include <gnomon/scene.h>
@@ -32,6 +33,11 @@ struct BakePath {
 
 /// The sun's path of a day; no steps in a polar night.
 BakePath bake_path(const SunPath& path, std::string place, std::string date);
+
+/// Another light's path, from its first key to its last, whose times are the clock. Throws
+/// Error{input} for positions, for a single key, for steps that LightPath::steps() refuses and for
+/// a diameter that is not 0 to pi.
+BakePath bake_path(const LightPath& path, int steps, double angular_diameter_rad);
 
 enum class BakeBits {
     eight = 8,     ///< exact to the step, of which there are at most 255

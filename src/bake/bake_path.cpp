@@ -1,10 +1,29 @@
 #include <gnomon/bake.h>
 
+#include "base/check.h"
+
+#include <glm/geometric.hpp>
+
 #include <chrono>
 #include <numbers>
 #include <utility>
 
 namespace gnomon {
+
+namespace {
+
+/// Normal of the polygon through the directions, by M. Newell's sum of cross products (I. E.
+/// Sutherland, R. F. Sproull, R. A. Schumacker, "A Characterization of Ten Hidden-Surface
+/// Algorithms", 1974): the axis of any arc of a circle. Up where they enclose nothing.
+DVec3 axis_of(const std::vector<DVec3>& directions) {
+    DVec3 sum(0.0);
+    for (std::size_t i = 0; i < directions.size(); ++i)
+        sum += glm::cross(directions[i], directions[(i + 1) % directions.size()]);
+    const double length = glm::length(sum);
+    return length > 0.0 ? sum / length : DVec3(0.0, 1.0, 0.0);
+}
+
+}  // namespace
 
 BakePath bake_path(const SunPath& path, std::string place, std::string date) {
     BakePath result;
@@ -27,6 +46,30 @@ BakePath bake_path(const SunPath& path, std::string place, std::string date) {
     const double half_s = 0.5 * path.times.daylight_s / static_cast<double>(path.steps.size());
     result.begin_s = first_s - half_s;
     result.end_s = result.begin_s + path.times.daylight_s;
+    return result;
+}
+
+BakePath bake_path(const LightPath& path, int steps, double angular_diameter_rad) {
+    if (path.kind() != LightPathKind::direction) {
+        fail_input(
+            "light path: goes through positions; a bake's light is far away: give directions");
+    }
+    if (path.keys().size() < 2) {
+        fail_input("light path: has one key; a bake needs two or more, for a span of time");
+    }
+    if (!(angular_diameter_rad >= 0.0 && angular_diameter_rad <= std::numbers::pi)) {
+        fail_input("light path: angular_diameter_rad is {}; it must be 0 to pi",
+                   angular_diameter_rad);
+    }
+    BakePath result;
+    for (const LightKey& step : path.steps(steps))
+        result.to_light_ws.push_back(step.value_ws);
+    result.pole_ws = axis_of(result.to_light_ws);
+    result.begin_s = path.begin_s();
+    result.end_s = path.end_s();
+    result.angular_diameter_rad = angular_diameter_rad;
+    result.summary = fmt::format("light path of {} keys, {:g} s to {:g} s", path.keys().size(),
+                                 path.begin_s(), path.end_s());
     return result;
 }
 
