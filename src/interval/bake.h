@@ -30,7 +30,7 @@ inline constexpr int kChooseTile = 0;
 /// The steps of the day at which each receiver is lit, on all of TBB's threads. Neighbours in the
 /// list should be neighbours in the scene: texels of a chart along a Z-order curve, chart by chart.
 /// `texels_per_tile` (1 to TileTracer::kMaxTexels) decides the time and never the result; without
-/// it, each thread tries some in each block of the list. Throws Error{input} for a tile out of
+/// it, each thread learns on the way which is fastest. Throws Error{input} for a tile out of
 /// range, Error{cancelled}.
 DayMasks bake(const Tree& tree, const DayPath& path, std::span<const trace::Receiver> receivers,
               Progress& progress, int texels_per_tile = kChooseTile);

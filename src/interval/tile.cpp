@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,6 +16,7 @@ namespace gnomon::interval {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using trace::kUnitRoundoff;
 using trace::Receiver;
 
@@ -216,6 +218,23 @@ void gather_hints(Walk& walk) {
     walk.culprit_count = 0;
 }
 
+/// In so many seconds; 0 = none.
+void set_deadline(Walk& walk, double most_s) {
+    walk.has_deadline = most_s > 0.0;
+    if (!walk.has_deadline) return;
+    const std::chrono::duration<double> most(most_s);
+    walk.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(most);
+}
+
+/// How many of the first look the same way; a hole in the chart ends the tile.
+std::size_t alike(std::span<const Receiver> receivers) {
+    std::size_t count = 1;
+    while (count < receivers.size() && receivers[count].exists() == receivers[0].exists() &&
+           receivers[count].normal_ws == receivers[0].normal_ws)
+        ++count;
+    return count;
+}
+
 /// Texels at a step to steps at a texel.
 void write_masks(Walk& walk, std::span<std::uint64_t> masks) {
     const auto words = static_cast<std::size_t>(walk.words);
@@ -233,6 +252,10 @@ void write_masks(Walk& walk, std::span<std::uint64_t> masks) {
 }
 
 }  // namespace
+
+bool is_late(const Walk& walk) {
+    return Clock::now() > walk.deadline;
+}
 
 std::uint64_t blocked_texels(const Walk& walk, std::uint64_t texels, int step, std::int32_t leaf,
                              int lane) {
@@ -291,40 +314,52 @@ void TileTracer::trace(std::span<const Receiver> receivers, int texels_per_tile,
     assert(texels_per_tile >= 1 && texels_per_tile <= kMaxTexels);
     const auto words = static_cast<std::size_t>(walk_->words);
     assert(masks.size() == receivers.size() * words);
-    while (!receivers.empty()) {
-        // As many as look the same way; a hole in the chart ends the tile.
-        std::size_t count = 1;
-        while (count < std::min<std::size_t>(receivers.size(), texels_per_tile) &&
-               receivers[count].exists() == receivers[0].exists() &&
-               receivers[count].normal_ws == receivers[0].normal_ws)
-            ++count;
-        trace_tile(receivers.first(count), masks.first(count * words));
-        receivers = receivers.subspan(count);
-        masks = masks.subspan(count * words);
+    for (std::size_t first = 0; first < receivers.size();) {
+        const std::size_t count = std::min<std::size_t>(receivers.size() - first, texels_per_tile);
+        const std::size_t same = alike(receivers.subspan(first, count));
+        trace_within(receivers.subspan(first, same), masks.subspan(first * words, same * words),
+                     0.0);
+        first += same;
     }
 }
 
-void TileTracer::trace_tile(std::span<const Receiver> receivers, std::span<std::uint64_t> masks) {
+bool TileTracer::trace_within(std::span<const Receiver> receivers, std::span<std::uint64_t> masks,
+                              double most_s) {
+    assert(receivers.size() <= kMaxTexels);
+    const auto words = static_cast<std::size_t>(walk_->words);
+    set_deadline(*walk_, most_s);
+    while (!receivers.empty()) {
+        const std::size_t same = alike(receivers);
+        if (!trace_tile(receivers.first(same), masks.first(same * words))) return false;
+        receivers = receivers.subspan(same);
+        masks = masks.subspan(same * words);
+    }
+    return true;
+}
+
+/// False when it is late.
+bool TileTracer::trace_tile(std::span<const Receiver> receivers, std::span<std::uint64_t> masks) {
     Walk& walk = *walk_;
     const auto words = static_cast<std::size_t>(walk.words);
     if (!receivers[0].exists()) {
         const std::uint64_t last = ~std::uint64_t{0} >> (64 * walk.words - walk.steps);
         for (std::size_t i = 0; i < masks.size(); ++i)
             masks[i] = i % words + 1 == words ? last : ~std::uint64_t{0};
-        return;
+        return true;
     }
     if (!set_tile(walk.tile, *walk.tree, receivers)) {
         const std::size_t half = receivers.size() / 2;
-        trace_tile(receivers.first(half), masks.first(half * words));
-        trace_tile(receivers.subspan(half), masks.subspan(half * words));
-        return;
+        return trace_tile(receivers.first(half), masks.first(half * words)) &&
+               trace_tile(receivers.subspan(half), masks.subspan(half * words));
     }
     open_steps(walk);
     if (!walk.tree->nodes().empty() && walk.any_open(0, walk.steps - 1)) {
-        walk_tree(walk);
+        const bool in_time = walk_tree(walk);
         gather_hints(walk);
+        if (!in_time) return false;
     }
     write_masks(walk, masks);
+    return true;
 }
 
 }  // namespace gnomon::interval

@@ -33,8 +33,13 @@ public:
     void trace(std::span<const trace::Receiver> receivers, int texels_per_tile,
                std::span<std::uint64_t> masks);
 
+    /// The same of at most kMaxTexels receivers together, in at most `most_s` seconds or a little
+    /// more; 0 = whatever it takes. False when that was not enough: then the masks are not done.
+    bool trace_within(std::span<const trace::Receiver> receivers, std::span<std::uint64_t> masks,
+                      double most_s);
+
 private:
-    void trace_tile(std::span<const trace::Receiver> receivers, std::span<std::uint64_t> masks);
+    bool trace_tile(std::span<const trace::Receiver> receivers, std::span<std::uint64_t> masks);
 
     std::unique_ptr<Walk> walk_;
 };

@@ -144,7 +144,7 @@ HWY_INLINE void prefetch(const T& object) {
 }
 
 template <bool kSingle>
-HWY_INLINE void walk_nodes(Walk& walk) {
+HWY_INLINE bool walk_nodes(Walk& walk) {
     const std::vector<Node>& nodes = walk.tree->nodes();
     const std::vector<Leaf>& leaves = walk.tree->leaves();
     visit_leaf(walk, walk.hint_leaf, kHintLeaf, 0, walk.steps - 1);
@@ -160,7 +160,10 @@ HWY_INLINE void walk_nodes(Walk& walk) {
             const auto id = ~entry.child;
             visit_leaf(walk, leaves[static_cast<std::size_t>(id)], id, entry.first_step,
                        entry.last_step);
-            if (walk.leaf_count > (Walk::kLeafBatch - 1) * kVisits) cast_leaves<kSingle>(walk);
+            if (walk.leaf_count <= (Walk::kLeafBatch - 1) * kVisits) continue;
+            cast_leaves<kSingle>(walk);
+            // Nodes alone take little time.
+            if (walk.has_deadline && is_late(walk)) return false;
             continue;
         }
         SeenChildren seen;
@@ -175,14 +178,12 @@ HWY_INLINE void walk_nodes(Walk& walk) {
     cast_leaves<kSingle>(walk);
     test_pairs<false>(walk);
     test_pairs<true>(walk);
+    return true;
 }
 
-void walk_tree(Walk& walk) {
-    if (walk.tile.texels == 1) {
-        walk_nodes<true>(walk);
-    } else {
-        walk_nodes<false>(walk);
-    }
+bool walk_tree(Walk& walk) {
+    walk.leaf_count = walk.pairs.count = walk.mixed_pairs.count = 0;
+    return walk.tile.texels == 1 ? walk_nodes<true>(walk) : walk_nodes<false>(walk);
 }
 
 }  // namespace gnomon::interval::HWY_NAMESPACE
@@ -193,8 +194,8 @@ namespace gnomon::interval {
 
 HWY_EXPORT(walk_tree);
 
-void walk_tree(Walk& walk) {
-    HWY_DYNAMIC_DISPATCH(walk_tree)(walk);
+bool walk_tree(Walk& walk) {
+    return HWY_DYNAMIC_DISPATCH(walk_tree)(walk);
 }
 
 std::int64_t walk_targets() {

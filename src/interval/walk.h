@@ -5,6 +5,7 @@
 #include "trace/receiver.h"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 
 namespace gnomon::interval {
@@ -124,6 +125,10 @@ struct Walk {
     Pairs pairs;        ///< triangles that have all texels in front of them
     Pairs mixed_pairs;  ///< those whose plane cuts the tile
 
+    /// Of the walk, which then ends unfinished; never if it is not to be looked at.
+    bool has_deadline = false;
+    std::chrono::steady_clock::time_point deadline;
+
     Leaf hint_leaf = Leaf::empty();  ///< no triangles with holes
     LeafIds hint_ids;
     Culprit culprits[kMaxCulprits];
@@ -172,8 +177,11 @@ struct Walk {
 };
 
 /// Darkens the texels of walk.tile, wherever a triangle of the tree is in the way. Starts from
-/// walk.lit and walk.open; for the best instruction set of this machine.
-void walk_tree(Walk& walk);
+/// walk.lit and walk.open; for the best instruction set of this machine. False when the deadline
+/// came first: then what is dark is dark, and what is lit is not known.
+bool walk_tree(Walk& walk);
+
+bool is_late(const Walk& walk);
 
 /// The instruction sets that walk_tree() is compiled for, as bits HWY_AVX2 and so on.
 std::int64_t walk_targets();
