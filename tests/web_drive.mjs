@@ -58,6 +58,9 @@ const state = () =>
     playing: window.gnomon.page.playing,
     hours: !document.getElementById("legend").hidden,
     probe: !document.getElementById("probe").hidden,
+    azimuth_deg: (180 / Math.PI) * window.gnomon.view.controls.getAzimuthalAngle(),
+    polar_deg: (180 / Math.PI) * window.gnomon.view.controls.getPolarAngle(),
+    distance_m: window.gnomon.view.controls.getDistance(),
   }));
 const press = async (key) => {
   await page.keyboard.press(key);
@@ -117,6 +120,12 @@ const judge = async () => {
   await page.waitForTimeout(500);
   seen.keys.pause = await press(" ");
   seen.keys.middle = await press("p");
+  for (const key of ["Shift+ArrowLeft", "Shift+ArrowRight", "Shift+ArrowUp", "Shift+ArrowDown", "+", "-"]) {
+    seen.keys[key] = await press(key);
+  }
+  await press("Shift+ArrowLeft");
+  await shot("turned");
+  await press("Shift+ArrowRight");
 
   await page.setViewportSize(PHONE);
   await press("h");

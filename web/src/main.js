@@ -10,6 +10,9 @@ const LONGEST_FRAME_MS = 250; // a page that was hidden goes on where it stopped
 const KEY_STEP_S = 300;
 const SLIDER_STEP_S = 60;
 const HOUR_S = 3600;
+const TURN_RAD = Math.PI / 36; // of the camera, by a key: 5 degrees
+const NEARER = 0.9; // of its distance
+const EXACT_S = 2; // bakes whose times are as fine tell seconds
 const CLICK_PX = 5; // a pointer that moves farther turns the camera
 const TICKS = 4; // parts of the legend at most
 
@@ -75,15 +78,24 @@ class Page {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const onButton = event.target instanceof HTMLButtonElement;
     const { canvas } = this.view;
+    const turns = {
+      ArrowLeft: () => this.view.turn(-TURN_RAD, 0),
+      ArrowRight: () => this.view.turn(TURN_RAD, 0),
+      ArrowUp: () => this.view.turn(0, TURN_RAD),
+      ArrowDown: () => this.view.turn(0, -TURN_RAD),
+    };
     const actions = {
       ArrowLeft: () => this.setTime(this.time_s - KEY_STEP_S),
       ArrowRight: () => this.setTime(this.time_s + KEY_STEP_S),
       " ": () => this.play(!this.playing),
       h: () => this.showHours(!this.showsHours),
       p: () => this.ask(this.view.pick(canvas.clientWidth >> 1, canvas.clientHeight >> 1)),
+      "+": () => this.view.approach(NEARER),
+      "=": () => this.view.approach(NEARER), // the key of + without Shift
+      "-": () => this.view.approach(1 / NEARER),
       Escape: () => this.ask(null),
     };
-    const action = actions[event.key];
+    const action = (event.shiftKey && turns[event.key]) || actions[event.key];
     if (!action || (event.key === " " && onButton)) return; // a button presses itself
     event.preventDefault();
     action();
@@ -130,18 +142,19 @@ class Page {
     }));
     this.view.stale = true;
     if (!hit) return;
+    const code_s = codeSeconds(this.bake);
+    const exact = code_s <= EXACT_S;
     const total_s = spans.reduce((sum, { rise_s, fall_s }) => sum + fall_s - rise_s, 0);
-    by("probe-total").textContent = spans.length > 0 ? `${words.duration(total_s)} of sun` : "No sun all day";
+    by("probe-total").textContent = spans.length > 0 ? `${words.duration(total_s, exact)} of sun` : "No sun all day";
     by("probe-intervals").replaceChildren(...spans.map(({ rise_s, fall_s }) => {
       const line = document.createElement("li");
       const length = document.createElement("span");
-      length.textContent = words.duration(fall_s - rise_s);
-      line.append(`${words.clock(rise_s)} – ${words.clock(fall_s)}`, length);
+      length.textContent = words.duration(fall_s - rise_s, exact);
+      line.append(`${words.clock(rise_s, exact)} – ${words.clock(fall_s, exact)}`, length);
       return line;
     }));
-    const step_s = codeSeconds(this.bake);
     by("probe-note").textContent =
-      spans.length > 0 && step_s >= 60 ? `Times in steps of ${words.duration(step_s)}` : "";
+      spans.length > 0 && code_s >= 60 ? `Times in steps of ${words.duration(code_s)}` : "";
   }
 
   moveMark() {

@@ -103,6 +103,25 @@ export class View {
     controls.update();
   }
 
+  // Moves the camera around what it looks at: to the right, and up, as far as dragging may.
+  turn(right_rad, up_rad) {
+    const { camera, controls } = this;
+    const from = new THREE.Spherical().setFromVector3(camera.position.clone().sub(controls.target));
+    from.theta += right_rad;
+    from.phi = THREE.MathUtils.clamp(from.phi - up_rad, controls.minPolarAngle, controls.maxPolarAngle);
+    camera.position.setFromSpherical(from.makeSafe()).add(controls.target);
+    controls.update();
+  }
+
+  // Multiplies its distance.
+  approach(factor) {
+    const { camera, controls } = this;
+    const from = camera.position.clone().sub(controls.target);
+    const distance = THREE.MathUtils.clamp(from.length() * factor, controls.minDistance, controls.maxDistance);
+    camera.position.copy(controls.target).add(from.setLength(distance));
+    controls.update();
+  }
+
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, SHARPEST));
