@@ -232,31 +232,58 @@ HWY_INLINE Lanes seen_at(Vf first, Vf last, int step) {
     return hn::And(hn::Le(first, at), hn::Ge(last, at));
 }
 
-/// Writes the values of some lanes side by side. Where no instruction does that, lane by lane: they
-/// are few, and Highway 1.0's tables of permutations are copied for each call by GCC.
-template <typename D, typename V, typename T>
-HWY_INLINE void store_some(D d, V values, Lanes lanes, T* to) {
-    if constexpr (kLanes == kWidth) {
-        hn::CompressStore(values, hn::RebindMask(d, lanes), d, to);
-    } else {
-        alignas(64) T all[kLanes];
-        hn::Store(values, d, all);
-        for (std::uint32_t bits = bits_of(lanes); bits != 0; bits &= bits - 1)
-            *to++ = all[std::countr_zero(bits)];
-    }
-}
+/// For each set of lanes: those, then any others.
+template <int kCount>
+struct Orders {
+    std::int32_t lanes[1 << kCount][kCount] = {};
 
-HWY_INLINE void append_indices(Pairs& pairs, Lanes lanes, int step, const LeafVisit& visit) {
+    constexpr Orders() {
+        for (int bits = 0; bits < 1 << kCount; ++bits) {
+            int place = 0;
+            for (int lane = 0; lane < kCount; ++lane) {
+                if ((bits >> lane & 1) != 0) lanes[bits][place++] = lane;
+            }
+        }
+    }
+};
+
+/// Writes the values of some lanes side by side, and others behind them: there must be room for a
+/// register. By our own table where no instruction does it, because GCC copies the whole of
+/// Highway 1.0's for each call.
+class SomeLanes {
+public:
+    HWY_INLINE explicit SomeLanes(Lanes lanes) : lanes_(lanes) {}
+
+    HWY_INLINE int count() const { return static_cast<int>(hn::CountTrue(Floats(), lanes_)); }
+
+    template <typename D, typename V, typename T>
+    HWY_INLINE void store(D d, V values, T* to) const {
+        if constexpr (kLanes == kWidth) {
+            hn::CompressStore(values, hn::RebindMask(d, lanes_), d, to);
+        } else {
+            static constexpr Orders<kLanes> kOrders;
+            const auto order = hn::SetTableIndices(d, kOrders.lanes[bits_of(lanes_)]);
+            hn::StoreU(hn::TableLookupLanes(values, order), d, to);
+        }
+    }
+
+private:
+    Lanes lanes_;
+};
+
+HWY_INLINE void append_indices(Pairs& pairs, const SomeLanes& lanes, int step,
+                               const LeafVisit& visit) {
     const Ints ints;
     hn::StoreU(hn::Set(ints, step), ints, pairs.step + pairs.count);
     hn::StoreU(hn::Set(ints, visit.id), ints, pairs.leaf + pairs.count);
-    store_some(ints, hn::Iota(ints, visit.first_lane), lanes, pairs.lane + pairs.count);
+    lanes.store(ints, hn::Iota(ints, visit.first_lane), pairs.lane + pairs.count);
 }
 
 template <bool kSingle>
-HWY_INLINE void append_edges(Pairs& pairs, Lanes lanes, const Terms<kSingle>& terms, Vf error) {
+HWY_INLINE void append_edges(Pairs& pairs, const SomeLanes& lanes, const Terms<kSingle>& terms,
+                             Vf error) {
     const auto append = [&](int term, Vf value) HWY_ATTR {
-        store_some(Floats(), value, lanes, pairs.terms[term] + pairs.count);
+        lanes.store(Floats(), value, pairs.terms[term] + pairs.count);
     };
     append(Term::u, terms.u);
     append(Term::v, terms.v);
@@ -269,10 +296,10 @@ HWY_INLINE void append_edges(Pairs& pairs, Lanes lanes, const Terms<kSingle>& te
 }
 
 /// Where `varying`, double decides, whatever float says.
-HWY_INLINE void append_sides(Pairs& pairs, Lanes lanes, const Sides& sides, Vf signs,
+HWY_INLINE void append_sides(Pairs& pairs, const SomeLanes& lanes, const Sides& sides, Vf signs,
                              Lanes varying) {
     const auto append = [&](int term, Vf value) HWY_ATTR {
-        store_some(Floats(), value, lanes, pairs.terms[term] + pairs.count);
+        lanes.store(Floats(), value, pairs.terms[term] + pairs.count);
     };
     append(Term::side, hn::Xor(sides.center, signs));
     append(Term::side_along_s, hn::Xor(sides.along_s, signs));
@@ -310,12 +337,12 @@ HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTrian
             continue;
         }
         const Lanes some = hn::And(hn::And(active, lanes), hn::Ge(terms.greatest(), minus_error));
-        const auto count = static_cast<int>(hn::CountTrue(Floats(), some));
         // In a whole leaf this is seldom otherwise, and a branch would cost more than it saves.
-        if ((kSingle || kLanes < kWidth) && count == 0) continue;
-        append_indices(walk.pairs, some, step, visit);
-        append_edges(walk.pairs, some, terms, error);
-        walk.pairs.count += count;
+        if ((kSingle || kLanes < kWidth) && hn::AllFalse(Floats(), some)) continue;
+        const SomeLanes appended(some);
+        append_indices(walk.pairs, appended, step, visit);
+        append_edges(walk.pairs, appended, terms, error);
+        walk.pairs.count += appended.count();
         if (walk.pairs.count > Pairs::kCapacity - kWidth) test_pairs<false>(walk);
     }
 }
@@ -359,9 +386,10 @@ HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangl
         }
         if (some == 0) continue;
         Pairs& pairs = walk.mixed_pairs;
-        append_indices(pairs, lanes_of(some), step, visit);
-        append_edges(pairs, lanes_of(some), terms, coefficients.error);
-        append_sides(pairs, lanes_of(some), sides, signs, lanes_of(varying));
+        const SomeLanes appended(lanes_of(some));
+        append_indices(pairs, appended, step, visit);
+        append_edges(pairs, appended, terms, coefficients.error);
+        append_sides(pairs, appended, sides, signs, lanes_of(varying));
         pairs.count += std::popcount(some);
         if (pairs.count > Pairs::kCapacity - kWidth) test_pairs<true>(walk);
     }
