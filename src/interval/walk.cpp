@@ -17,6 +17,7 @@
 #include <hwy/foreach_target.h>
 //
 #include "interval/leaf.inl.h"
+#include "interval/pairs.inl.h"
 #include "interval/walk.h"
 
 #include <hwy/cache_control.h>
@@ -26,45 +27,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::interval::HWY_NAMESPACE {
-
-/// Tests the waiting triangles at their steps, texel by texel.
-template <bool kMixed>
-void test_pairs(Walk& walk) {
-    Pairs& pairs = kMixed ? walk.mixed_pairs : walk.pairs;
-    const Tile& tile = walk.tile;
-    for (int e = 0; e < pairs.count; ++e) {
-        const int step = pairs.step[e];
-        const std::uint64_t lit = walk.lit[step];
-        if (lit == 0) continue;
-        const auto term = [&](int index) HWY_ATTR { return splat(pairs.terms[index][e]); };
-        const Vf error = term(Term::error), minus_error = hn::Neg(error);
-        std::uint64_t sure = 0, possible = 0;
-        for (int first = 0; first < tile.texels; first += kLanes) {
-            const Vf s = load(tile.s + first), t = load(tile.t + first);
-            const auto at_texels = [&](int center, int along_s, int along_t) HWY_ATTR {
-                return hn::MulAdd(s, term(along_s), hn::MulAdd(t, term(along_t), term(center)));
-            };
-            const Vf u = at_texels(Term::u, Term::u_along_s, Term::u_along_t);
-            const Vf v = at_texels(Term::v, Term::v_along_s, Term::v_along_t);
-            const Vf least = hn::Min(hn::Min(u, v), hn::Sub(hn::Sub(term(Term::det), u), v));
-            Lanes hit = hn::Gt(least, error), may_hit = hn::Ge(least, minus_error);
-            if constexpr (kMixed) {
-                const Vf side = at_texels(Term::side, Term::side_along_s, Term::side_along_t);
-                hit = hn::And(hit, hn::Gt(side, term(Term::side_error)));
-                may_hit = hn::And(may_hit, hn::Ge(side, hn::Neg(term(Term::side_error))));
-            }
-            sure |= std::uint64_t{bits_of(hit)} << first;
-            possible |= std::uint64_t{bits_of(may_hit)} << first;
-        }
-        if ((walk.masked(pairs.leaf[e]) >> pairs.lane[e] & 1) != 0) sure = 0;
-        const std::uint64_t unsure = possible & ~sure & lit;
-        if (unsure != 0) {
-            sure |= blocked_texels(walk, unsure, step, pairs.leaf[e], pairs.lane[e]);
-        }
-        walk.darken(step, sure);
-    }
-    pairs.count = 0;
-}
 
 /// Children that some step can see, nearest first.
 struct SeenChildren {
@@ -183,6 +145,7 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
 
 bool walk_tree(Walk& walk) {
     walk.leaf_count = walk.pairs.count = walk.mixed_pairs.count = 0;
+    set_strips(walk.tile);
     return walk.tile.texels == 1 ? walk_nodes<true>(walk) : walk_nodes<false>(walk);
 }
 

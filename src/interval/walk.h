@@ -12,6 +12,13 @@ namespace gnomon::interval {
 
 inline constexpr int kMaxTexels = TileTracer::kMaxTexels;
 
+/// Texels by where they are along one of a tile's axes, in strips of equal width.
+struct Strips {
+    static constexpr int kCount = 32;  ///< four for each of 8 texels in a row
+    std::uint64_t from[kCount];        ///< those in a strip, and in all after it
+    std::uint64_t to[kCount];          ///< those in a strip, and in all before it
+};
+
 /// Texels of one plane, in the tree's frame. The origin of a texel's rays is
 /// center + s * u_axis + t * v_axis, s and t in [-1, 1], but for `residual_m`.
 struct Tile {
@@ -21,6 +28,7 @@ struct Tile {
     float u_axis_m[3], v_axis_m[3];
     float normal[3];
     alignas(64) float s[kMaxTexels], t[kMaxTexels];
+    Strips strips_s, strips_t;     ///< walk_tree() sets them
     float lower_m[3], upper_m[3];  ///< around the origins, with room for the tree's roundings
     float residual_m = 0.0f;
     /// Heights over the tile's plane, and distances from planes of triangles, that are smaller are
