@@ -15,6 +15,8 @@
 
 #include "interval/leaf.inl.h"
 
+#include <algorithm>
+
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::interval::HWY_NAMESPACE {
 
