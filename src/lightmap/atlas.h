@@ -22,6 +22,8 @@ struct Options {
     bool keep_texcoords = true;       ///< use a mesh's own coordinates where they serve
     bool back_sides = true;           ///< texels on the backs that light can reach; see Surface
     std::uint64_t memory_limit_bytes = 0;  ///< 0 = the machine's memory
+    /// Where light can come from: sides that face none of it get no texels. Empty: from anywhere.
+    std::vector<DVec3> to_light_ws = {};
 };
 
 /// What a light map will take, from the charts' sizes alone.

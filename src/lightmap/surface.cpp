@@ -100,12 +100,20 @@ std::vector<std::uint32_t> components(std::span<const std::array<std::uint32_t, 
     return names;
 }
 
-Surface::Surface(const Scene& scene, std::uint32_t instance, bool with_backs) {
+Surface::Surface(const Scene& scene, std::uint32_t instance, bool with_backs,
+                 std::span<const DVec3> to_light_ws) {
     const Instance& placed = scene.instances()[instance];
     const Mesh& mesh = scene.meshes()[placed.mesh];
     const Material& material = scene.materials()[mesh.material];
     add_faces(mesh, placed.world_from_local);
     if (with_backs && material.double_sided) add_backs(!material.masked());
+    if (!to_light_ws.empty()) {
+        std::erase_if(faces_, [&](const Face& face) {
+            return std::ranges::none_of(to_light_ws, [&](const DVec3& to_light) {
+                return glm::dot(face.normal_ws, to_light) > 0.0;
+            });
+        });
+    }
     index_edges();
 }
 

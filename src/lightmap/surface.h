@@ -33,7 +33,9 @@ struct Face {
 /// gets texels inside that it did not need.
 class Surface {
 public:
-    Surface(const Scene& scene, std::uint32_t instance, bool with_backs);
+    /// With `to_light_ws`, only the sides that face one of these directions.
+    Surface(const Scene& scene, std::uint32_t instance, bool with_backs,
+            std::span<const DVec3> to_light_ws = {});
 
     const std::vector<Face>& faces() const { return faces_; }
 

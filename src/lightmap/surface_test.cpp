@@ -28,6 +28,16 @@ TEST(Surface, SheetsOfDoubleSidedMaterialsHaveBacksUnlessNotWanted) {
         EXPECT_EQ(face.normal_ws, DVec3(0, face.back ? -1 : 1, 0));
 }
 
+TEST(Surface, SidesThatFaceNoLightAreLeftOut) {
+    const Scene sheet = scene_of({scene::ground(Vec2(-1), Vec2(1))}, true);
+    const DVec3 above(0.6, 0.8, 0.0);
+    EXPECT_EQ(backs(Surface(sheet, 0, true, std::span(&above, 1))), 0u);
+    const DVec3 both[] = {above, -above};
+    EXPECT_EQ(backs(Surface(sheet, 0, true, both)), 2u);
+    const Surface cube(scene_of({unit_cube()}), 0, true, std::span(&above, 1));
+    EXPECT_EQ(cube.faces().size(), 4u) << "its top and its side to +x, but no side that it grazes";
+}
+
 TEST(Surface, TheInsideOfAClosedSolidIsDark) {
     Mesh two = unit_cube();
     scene::append(two, scene::centered_box({5, 0, 0}, Vec3(1)));

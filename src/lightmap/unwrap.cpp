@@ -41,7 +41,7 @@ public:
           instance_(instance),
           set_(set),
           options_(options),
-          surface_(scene, instance, options.back_sides),
+          surface_(scene, instance, options.back_sides, options.to_light_ws),
           corners_(surface_.faces().size()),
           facet_of_face_(surface_.faces().size(), kNone),
           chart_of_face_(surface_.faces().size(), kNone) {}
