@@ -64,7 +64,8 @@ Survey survey(const Scene& scene, const Options& options, Progress& progress) {
         parts.size(), 1,
         [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
-                const Surface surface(scene, static_cast<std::uint32_t>(i), options.back_sides, options.to_light_ws);
+                const Surface surface(scene, static_cast<std::uint32_t>(i), options.back_sides,
+                                      options.to_light_ws);
                 std::vector<std::uint32_t> all(surface.faces().size());
                 std::iota(all.begin(), all.end(), 0u);
                 for (const GrownChart& chart : grow_charts(surface, std::move(all), limits))
