@@ -40,8 +40,10 @@ BakePath bake_path(const SunPath& path, std::string place, std::string date);
 BakePath bake_path(const LightPath& path, int steps, double angular_diameter_rad);
 
 enum class BakeBits {
-    eight = 8,     ///< exact to the step, of which there are at most 255
-    sixteen = 16,  ///< exact to a 64th of a step: a second of 1023 steps of a day
+    eight = 8,  ///< exact to the step, of which there are at most 255
+    /// Exact to a 64th of a step, a second of 1023 steps of a day; what is shorter than a step can
+    /// be missed.
+    sixteen = 16,
 };
 
 /// The parts of a step that a code tells apart.
@@ -74,7 +76,7 @@ struct IntervalPage {
 
 struct BakeReport {
     std::uint64_t texels = 0, lit_texels = 0, intervals = 0;
-    std::uint64_t buried_texels = 0;  ///< inside of solids: they repeat a neighbour's
+    std::uint64_t buried_texels = 0;  ///< wholly inside of solids: they repeat a neighbour's
     int most_intervals = 0;           ///< of a texel
     std::uint64_t closed_gaps = 0;    ///< for want of pairs
     double closed_share = 0.0;        ///< of all texels' time, lit where it is dark

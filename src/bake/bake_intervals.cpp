@@ -3,12 +3,14 @@
 #include "bake/baked_texels.h"
 #include "bake/buried.h"
 #include "bake/interval_codes.h"
-#include "bake/lit_times.h"
+#include "bake/light_day.h"
+#include "bake/open_points.h"
 #include "bake/texel_receivers.h"
 #include "base/check.h"
 #include "lightmap/dilate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace gnomon {
@@ -35,13 +37,12 @@ void check(const BakePath& path, const BakeOptions& options) {
 struct TexelIntervals {
     std::vector<bake::LitTimes> texels;  ///< `most` intervals of each, at most
     std::size_t most = 0;
-    std::vector<bool> buried;  ///< of each texel: it is inside of a solid
     BakeReport report;
 };
 
 /// Closes gaps until the texels have at most `allowed` intervals each, and counts.
 TexelIntervals limited(std::vector<bake::LitTimes> times, int path_codes, std::size_t allowed) {
-    TexelIntervals result{.texels = std::move(times), .buried = {}, .report = {}};
+    TexelIntervals result{.texels = std::move(times), .report = {}};
     BakeReport& report = result.report;
     std::uint64_t closed = 0;
     std::size_t most = 0;
@@ -60,21 +61,27 @@ TexelIntervals limited(std::vector<bake::LitTimes> times, int path_codes, std::s
     return result;
 }
 
-/// Only what never sees the light can be buried.
-void find_buried(const Scene& scene, const BakePath& path,
-                 std::span<const trace::Receiver> receivers, TexelIntervals& intervals,
-                 Progress& progress) {
+/// What is under a ground can see the light past its edge when that is lowest, for this part of the
+/// path at most.
+constexpr double kMostLitBelow = 0.02;
+
+/// Only what never sees the light, or hardly ever, can be buried.
+std::vector<bool> find_buried(const bake::LightDay& light, const bake::TexelDay& day,
+                              Progress& progress) {
+    const int most = static_cast<int>(kMostLitBelow * light.codes());
     std::vector<std::uint32_t> dark;
-    for (std::uint32_t i = 0; i < intervals.texels.size(); ++i) {
-        if (intervals.texels[i].empty()) dark.push_back(i);
+    for (std::uint32_t i = 0; i < day.receivers.size(); ++i) {
+        int lit = 0;
+        for (const bake::CodedInterval& interval : day.times[i])
+            lit += interval.fall - interval.rise;
+        if (lit <= most) dark.push_back(i);
     }
     const std::vector<bool> found =
-        bake::are_buried(scene, receivers, dark, path.to_light_ws, progress);
-    intervals.buried.assign(intervals.texels.size(), false);
-    for (std::size_t i = 0; i < dark.size(); ++i) {
-        intervals.buried[dark[i]] = found[i];
-        intervals.report.buried_texels += found[i] ? 1 : 0;
-    }
+        bake::are_buried(light.scene(), day.receivers, dark, light.path().to_light_ws, progress);
+    std::vector<bool> buried(day.receivers.size(), false);
+    for (std::size_t i = 0; i < dark.size(); ++i)
+        buried[dark[i]] = found[i];
+    return buried;
 }
 
 IntervalPage blank_page(unsigned side, int pairs) {
@@ -122,32 +129,92 @@ void move_out_buried(std::vector<std::uint32_t>& owner, unsigned side,
     }
 }
 
-std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const lightmap::Texels& texels,
-                                   const TexelIntervals& intervals) {
-    constexpr std::uint32_t kNone = lightmap::kNoTexel;
-    std::vector<IntervalPage> pages;
-    std::vector<std::vector<std::uint32_t>> owner;  // the texel of each place
+int pairs_for(const TexelIntervals& intervals) {
     const std::size_t most = std::max<std::size_t>(intervals.most, 1);
-    const int pairs = static_cast<int>((most + kIntervalsPerPair - 1) / kIntervalsPerPair);
-    for (const unsigned side : atlas.page_sides_texels) {
-        pages.push_back(blank_page(side, pairs));
-        owner.emplace_back(std::size_t{side} * side, kNone);
-    }
+    return static_cast<int>((most + kIntervalsPerPair - 1) / kIntervalsPerPair);
+}
+
+/// Which texel each place of a page repeats.
+using Owners = std::vector<std::uint32_t>;
+
+std::vector<Owners> owners_of(const lightmap::Atlas& atlas, const lightmap::Texels& texels,
+                              const std::vector<bool>& buried) {
+    std::vector<Owners> owners;
+    for (const unsigned side : atlas.page_sides_texels)
+        owners.emplace_back(std::size_t{side} * side, lightmap::kNoTexel);
     for (std::uint32_t i = 0; i < texels.texels.size(); ++i) {
         const lightmap::Texel& texel = texels.texels[i];
         const std::uint32_t page = atlas.charts[atlas.facets[texel.facet].chart].page;
-        owner[page][std::size_t{texel.y} * pages[page].side_texels + texel.x] = i;
+        owners[page][std::size_t{texel.y} * atlas.page_sides_texels[page] + texel.x] = i;
     }
-    for (std::uint32_t p = 0; p < pages.size(); ++p) {
-        move_out_buried(owner[p], pages[p].side_texels, intervals.buried);
+    for (std::uint32_t p = 0; p < owners.size(); ++p) {
+        move_out_buried(owners[p], atlas.page_sides_texels[p], buried);
         const std::vector<std::uint32_t> sources =
             lightmap::dilation_sources(atlas, texels, p, atlas.options.padding_texels);
-        lightmap::dilate(std::span(owner[p]), sources);
-        for (std::size_t place = 0; place < owner[p].size(); ++place) {
-            if (owner[p][place] != kNone) put(pages[p], place, intervals.texels[owner[p][place]]);
+        lightmap::dilate(std::span(owners[p]), sources);
+    }
+    return owners;
+}
+
+std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const std::vector<Owners>& owners,
+                                   const TexelIntervals& intervals) {
+    const int pairs = pairs_for(intervals);
+    std::vector<IntervalPage> pages;
+    for (std::size_t p = 0; p < owners.size(); ++p) {
+        pages.push_back(blank_page(atlas.page_sides_texels[p], pairs));
+        for (std::size_t place = 0; place < owners[p].size(); ++place) {
+            if (owners[p][place] == lightmap::kNoTexel) continue;
+            put(pages[p], place, intervals.texels[owners[p][place]]);
         }
     }
     return pages;
+}
+
+/// Where each place's texel asks, from the place's own centre.
+std::vector<bake::SamplePlaces> places_of(const bake::BakedTexels& baked,
+                                          const lightmap::Texels& texels,
+                                          const std::vector<trace::Receiver>& receivers,
+                                          const std::vector<Owners>& owners) {
+    std::vector<bake::SamplePlaces> pages;
+    for (std::size_t p = 0; p < owners.size(); ++p) {
+        const unsigned side = baked.atlas.page_sides_texels[p];
+        bake::SamplePlaces page(owners[p].size());
+        for (std::size_t place = 0; place < owners[p].size(); ++place) {
+            const std::uint32_t texel = owners[p][place];
+            if (texel == lightmap::kNoTexel) continue;
+            const glm::dvec2 center(static_cast<double>(place % side) + 0.5,
+                                    static_cast<double>(place / side) + 0.5);
+            const lightmap::Facet& facet = baked.atlas.facets[texels.texels[texel].facet];
+            page[place] = bake::coded_place(
+                bake::page_place(facet, DVec3(receivers[texel].position_ws)) - center);
+        }
+        pages.push_back(std::move(page));
+    }
+    return pages;
+}
+
+std::size_t allowed_intervals(const BakeOptions& options) {
+    return kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs);
+}
+
+bake::FineCells fine_cells(const lightmap::Atlas& atlas, const std::vector<IntervalPage>& pages,
+                           int parts, const bake::LightDay& light, const BakeOptions& options,
+                           Progress& progress) {
+    bake::FineSamples samples =
+        bake::fine_samples(light.scene(), atlas, pages, parts, light.codes());
+    bake::FineCells cells = std::move(samples.cells);
+    bake::TexelDay day{.receivers = std::move(samples.receivers), .times = {}, .buried = {}};
+    day.times = light.times(day.receivers, progress);
+    const std::vector<std::uint32_t> sources =
+        bake::open_samples(cells, find_buried(light, day, progress));
+    const TexelIntervals intervals =
+        limited(std::move(day.times), light.codes(), allowed_intervals(options));
+    const auto side = static_cast<unsigned>(
+        std::ceil(std::sqrt(static_cast<double>(std::max<std::size_t>(sources.size(), 1)))));
+    cells.samples = blank_page(side, pairs_for(intervals));
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        put(cells.samples, i, intervals.texels[sources[i]]);
+    return cells;
 }
 
 }  // namespace
@@ -155,23 +222,35 @@ std::vector<IntervalPage> pages_of(const lightmap::Atlas& atlas, const lightmap:
 namespace bake {
 
 BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOptions& options,
-                         Progress& progress) {
+                         const LookupOptions& lookup, Progress& progress) {
     check(path, options);
     BakedTexels baked;
     baked.atlas = lightmap::make_atlas(
         scene,
-        {.texel_size_m = options.texel_size_m, .memory_limit_bytes = options.memory_limit_bytes},
+        {.texel_size_m = options.texel_size_m,
+         .memory_limit_bytes = options.memory_limit_bytes,
+         .to_light_ws = lookup.lit_sides_only ? path.to_light_ws : std::vector<DVec3>()},
         progress);
     const lightmap::Texels texels = lightmap::make_texels(scene, baked.atlas, progress);
-    const std::vector<trace::Receiver> receivers = texel_receivers(baked.atlas, texels);
+    const LightDay light(scene, path, options, progress);
+    TexelDay day{.receivers = texel_receivers(baked.atlas, texels), .times = {}, .buried = {}};
+    day.times = light.kept_times(day.receivers, progress);
+    day.buried = find_buried(light, day, progress);
+    move_to_open(baked.atlas, texels, light, day, progress);
     TexelIntervals intervals =
-        limited(lit_times(scene, path, options, receivers, progress),
-                path.steps() * codes_per_step(options.bits),
-                kIntervalsPerPair * static_cast<std::size_t>(options.most_pairs));
-    find_buried(scene, path, receivers, intervals, progress);
-    baked.pages = pages_of(baked.atlas, texels, intervals);
+        limited(std::move(day.times), light.codes(), allowed_intervals(options));
+    intervals.report.buried_texels =
+        static_cast<std::uint64_t>(std::ranges::count(day.buried, true));
+    intervals.report.warnings = baked.atlas.warnings;
+    const std::vector<Owners> owners = owners_of(baked.atlas, texels, day.buried);
+    baked.path_codes = light.codes();
+    baked.places = places_of(baked, texels, day.receivers, owners);
+    baked.pages = pages_of(baked.atlas, owners, intervals);
     baked.report = std::move(intervals.report);
-    baked.report.warnings = baked.atlas.warnings;
+    if (lookup.fine_parts > 1) {
+        baked.fine =
+            fine_cells(baked.atlas, baked.pages, lookup.fine_parts, light, options, progress);
+    }
     return baked;
 }
 
@@ -179,7 +258,7 @@ BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOpt
 
 IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
                             Progress& progress) {
-    bake::BakedTexels baked = bake::baked_texels(scene, path, options, progress);
+    bake::BakedTexels baked = bake::baked_texels(scene, path, options, {}, progress);
     IntervalBake result;
     result.scene = lightmap::with_lightmap(scene, baked.atlas);
     result.mesh_pages = lightmap::lightmapped_pages(scene, baked.atlas);

@@ -7,6 +7,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -61,6 +62,24 @@ std::optional<Vec3> middle_facing(std::span<const DVec3> to_light_ws, Vec3 norma
     return std::nullopt;
 }
 
+/// Rays along a wall go so far aside that they do not run in it.
+constexpr float kAside = 0.01f;
+/// The height of the normal of what is no wall, but a ground or a ceiling.
+constexpr float kNoWall = 0.5f;
+
+/// Where the ground is a sheet, nothing tells its inner side; but below it there is nothing. The
+/// foot of a wall is there when it has something above it and nothing below.
+bool is_underground(const trace::Caster& caster, const trace::Receiver& receiver) {
+    const Vec3 normal_ws = receiver.normal_ws;
+    if (std::abs(normal_ws.y) > kNoWall) return false;
+    const Vec3 up_wall_ws = glm::normalize(Vec3(0, 1, 0) - normal_ws.y * normal_ws);
+    trace::ShadowRays rays(true);
+    rays.add(receiver, glm::normalize(up_wall_ws + kAside * normal_ws));
+    rays.add(receiver, glm::normalize(-up_wall_ws + kAside * normal_ws));
+    caster.trace(rays);
+    return rays.blocked(0) && !rays.blocked(1);
+}
+
 /// Whether a ray meets an inner side first.
 bool begins_inside(const Solids& solids, const trace::Caster& caster, Vec3 origin_ws,
                    Vec3 direction_ws) {
@@ -79,9 +98,10 @@ std::vector<bool> are_buried(const Scene& scene, std::span<const trace::Receiver
                              std::span<const std::uint32_t> asked,
                              std::span<const DVec3> to_light_ws, Progress& progress) {
     std::vector<std::uint8_t> buried(asked.size(), 0);
+    if (asked.empty()) return {};
     const Solids solids(scene);
-    if (solids.scene.triangle_count() == 0) return std::vector<bool>(asked.size(), false);
     const trace::Caster caster(solids.scene, true, progress);
+    const trace::Caster everything(scene, false, progress);
     parallel_for(
         asked.size(), kReceiversPerTask,
         [&](std::size_t first, std::size_t last) {
@@ -91,7 +111,8 @@ std::vector<bool> are_buried(const Scene& scene, std::span<const trace::Receiver
                 const std::optional<Vec3> to_light = middle_facing(to_light_ws, receiver.normal_ws);
                 const bool is_buried =
                     begins_inside(solids, caster, origin_ws, receiver.normal_ws) ||
-                    (to_light && begins_inside(solids, caster, origin_ws, *to_light));
+                    (to_light && begins_inside(solids, caster, origin_ws, *to_light)) ||
+                    is_underground(everything, receiver);
                 buried[i] = is_buried ? 1 : 0;
             }
         },

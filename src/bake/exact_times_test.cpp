@@ -3,7 +3,7 @@
 #include <gnomon/sun.h>
 
 #include "bake/fine_path.h"
-#include "bake/lit_times.h"
+#include "bake/light_day.h"
 #include "bake/thread_limit.h"
 
 #include <gtest/gtest.h>
@@ -136,7 +136,8 @@ TEST_P(ExactTimesOfBoxes, AreThoseOfTheAlmanac) {
     const std::vector<Receiver> points = floor_points();
     Progress silent;
     const std::vector<LitTimes> times =
-        lit_times(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = {}}, points, silent);
+        LightDay(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = {}}, silent)
+            .kept_times(points, silent);
     const double codes = kMostSteps * ExactTimes::kParts;
     const double code_s = (path.end_s - path.begin_s) / codes;
     // Float coordinates of some metres, and the almanac's milliseconds.
@@ -167,10 +168,12 @@ TEST(ExactTimes, AreTheSameOnAnyNumberOfThreads) {
     const std::vector<Receiver> points = floor_points();
     const BakeOptions options{.bits = BakeBits::sixteen, .resume_file = {}};
     Progress silent;
-    const std::vector<LitTimes> all = lit_times(boxes(), path, options, points, silent);
+    const std::vector<LitTimes> all =
+        LightDay(boxes(), path, options, silent).kept_times(points, silent);
     const ThreadLimit one(1);
-    EXPECT_EQ(lit_times(boxes(), path, options, points, silent), all);
-    EXPECT_EQ(lit_times(boxes(), path, options, std::span(points).subspan(7, 20), silent),
+    EXPECT_EQ(LightDay(boxes(), path, options, silent).kept_times(points, silent), all);
+    EXPECT_EQ(LightDay(boxes(), path, options, silent)
+                  .kept_times(std::span(points).subspan(7, 20), silent),
               std::vector(all.begin() + 7, all.begin() + 27));
 }
 
@@ -179,9 +182,11 @@ TEST(ExactTimes, StayWithinTheirStep) {
     const BakePath path = bake_path(sun_of(2026y / March / 21, 200), "", "");
     const std::vector<Receiver> points = floor_points();
     Progress silent;
-    const auto steps = lit_times(boxes(), path, {.resume_file = {}}, points, silent);
+    const auto steps =
+        LightDay(boxes(), path, {.resume_file = {}}, silent).kept_times(points, silent);
     const auto exact =
-        lit_times(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = {}}, points, silent);
+        LightDay(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = {}}, silent)
+            .kept_times(points, silent);
     int moved = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_EQ(steps[i].size(), exact[i].size());

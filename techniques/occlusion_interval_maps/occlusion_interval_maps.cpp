@@ -2,12 +2,15 @@
 // the sun's centre; a sun with extent is the part of its way that it covers. W. Donnelly, J.
 // Demers, "Generating Soft Shadows Using Occlusion Interval Maps", GPU Gems, 2004, chapter 13.
 // Departures: intervals come from one traversal for a tile of texels (src/interval) instead of 256
-// rays for each; receivers interpolate what their four texels see, not take the nearest one's; and
-// moments count by the height of the sun's disc there, not alike. Runs on the host.
+// rays for each, and their ends from rays between steps; receivers move the edges of shadows of
+// their four texels to their own time, not take the nearest texel's; where the four have not the
+// same edges there are finer samples; and moments count by the height of the sun's disc there, not
+// alike. Runs on the host.
 
 #include "bake/baked_texels.h"
 #include "bake/circle_path.h"
 #include "base/parallel.h"
+#include "lightmap/surface.h"
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
 
@@ -26,18 +29,24 @@ namespace {
 
 /// A light this near to the baked circle is on it: a tenth of the sun's radius.
 constexpr double kOnCircle_rad = 5e-4;
+/// As many as a number of 8 bits tells apart.
+constexpr int kMostSteps8 = 255;
 constexpr std::size_t kReceiversPerTask = 4096;
 constexpr DVec3 kUp(0.0, 1.0, 0.0);
 
+enum class TimeBits { eight, sixteen };
 enum class Weight { even, disc };
 
 struct Options {
     double latitude_deg = 48.0;
     double north_deg = 0.0;
-    int steps = 255;
+    int steps = 511;
     double texel_size_m = 0.0;
-    int texels = 200'000;
-    bake::TexelLookup lookup = bake::TexelLookup::interpolated;
+    int texels = 400'000;
+    bool half_resolution = false;
+    int fine_parts = 4;
+    TimeBits bits = TimeBits::sixteen;
+    bake::TexelLookup lookup = bake::TexelLookup::edges;
     Weight weight = Weight::disc;
 };
 
@@ -48,24 +57,31 @@ const ParamTable<Options>& param_table() {
                 "of the place: the sun turns about the pole that high in the north"),
          number("north", &Options::north_deg, -360.0, 360.0, "degrees",
                 "azimuth of true north in the scene, clockwise from -Z"),
-         integer("steps", &Options::steps, 1, 1023, "1", "parts of the sun's way of the day"),
+         integer("steps", &Options::steps, 1, 1023, "1",
+                 "parts of the sun's way of the day; what is dark for less can be missed"),
          number("texel_size", &Options::texel_size_m, 0.0, 1000.0, "m",
                 "side of a texel; 0: such that there are as many as `texels` says"),
          integer("texels", &Options::texels, 1000, 100'000'000, "1", "about how many"),
-         choice("lookup", &Options::lookup, {"nearest", "interpolated"},
-                "what the texel there sees, or what the four around see, bilinearly"),
+         boolean("half_resolution", &Options::half_resolution,
+                 "texels of twice that size, a quarter as many"),
+         integer("fine_parts", &Options::fine_parts, 1, 8, "1",
+                 "along each side of what is between four texels that have not the same edges of "
+                 "shadows; for `lookup` edges"),
+         choice("bits", &Options::bits, {"8", "16"},
+                "of a time: steps, no more than 255 of which are used, or 64ths of them"),
+         choice("lookup", &Options::lookup, {"nearest", "interpolated", "edges"},
+                "what the texel there sees; what the four around see, bilinearly; or that once "
+                "their edges have been moved to the receiver"),
          choice("weight", &Options::weight, {"even", "disc"},
                 "the sun is a line along its way, or a disc, less of which is where it begins")});
     return table;
 }
 
-double surface_area_m2(const Scene& scene) {
+/// Of the sides that face the path at some time.
+double lit_area_m2(const Scene& scene, const BakePath& path) {
     double area_m2 = 0.0;
-    for (std::uint32_t i = 0; i < scene.instances().size(); ++i) {
-        const std::size_t count = scene.meshes()[scene.instances()[i].mesh].triangles.size();
-        for (std::uint32_t t = 0; t < count; ++t)
-            area_m2 += 0.5 * glm::length(trace::world_triangle(scene, {i, t}).front_normal_ws());
-    }
+    for (std::uint32_t i = 0; i < scene.instances().size(); ++i)
+        area_m2 += lightmap::Surface(scene, i, true, path.to_light_ws).area_m2();
     return area_m2;
 }
 
@@ -85,13 +101,30 @@ private:
 
     void prepare_scene(const Scene& scene, Progress& progress) override {
         baked_ = nullptr;
-        area_m2_ = surface_area_m2(scene);
         for (const Light& light : scene.lights()) {
             if (const auto* sun = std::get_if<DirectionalLight>(&light)) {
-                if (area_m2_ > 0.0) bake_for(scene, *sun, false, progress);
+                bake_for(scene, *sun, false, progress);
                 return;
             }
         }
+    }
+
+    int steps() const {
+        return options_.bits == TimeBits::eight ? std::min(options_.steps, kMostSteps8)
+                                                : options_.steps;
+    }
+    /// Only where edges are asked for do finer cells count.
+    int fine_parts() const {
+        return options_.lookup == bake::TexelLookup::edges ? options_.fine_parts : 1;
+    }
+    BakeBits bits() const {
+        return options_.bits == TimeBits::eight ? BakeBits::eight : BakeBits::sixteen;
+    }
+
+    /// Whether the light's way is baked.
+    bool is_baked_for(const DirectionalLight& sun, bool ignore_alpha) const {
+        if (!baked_ || baked_->ignore_alpha != ignore_alpha) return false;
+        return bake::step_on(baked_->through, DVec3(sun.to_light_ws), kOnCircle_rad) >= 0.0;
     }
 
     void bake_for(const Scene& scene, const DirectionalLight& sun, bool ignore_alpha,
@@ -99,18 +132,24 @@ private:
         auto baked = std::make_unique<Baked>();
         const DVec3 pole_ws = sky_direction_ws(0.0, options_.latitude_deg,
                                                {.up = UpAxis::y, .north_deg = options_.north_deg});
-        baked->through = bake::circle_through(DVec3(sun.to_light_ws), pole_ws, kUp, options_.steps);
+        baked->through = bake::circle_through(DVec3(sun.to_light_ws), pole_ws, kUp, steps());
         baked->ignore_alpha = ignore_alpha;
-        const double texel_size_m = options_.texel_size_m > 0.0
-                                        ? options_.texel_size_m
-                                        : std::sqrt(area_m2_ / options_.texels);
-        baked->texels = bake::baked_texels(scene, baked->through.path,
-                                           {.texel_size_m = texel_size_m,
-                                            .bits = BakeBits::sixteen,
-                                            .most_pairs = 16,
-                                            .ignore_alpha = ignore_alpha,
-                                            .resume_file = {}},
-                                           progress);
+        const double area_m2 = lit_area_m2(scene, baked->through.path);
+        double texel_size_m = options_.texel_size_m > 0.0 ? options_.texel_size_m
+                                                          : std::sqrt(area_m2 / options_.texels);
+        if (options_.half_resolution) texel_size_m *= 2.0;
+        if (!(area_m2 > 0.0)) {  // nothing ever faces the light
+            baked_ = std::move(baked);
+            return;
+        }
+        baked->texels =
+            bake::baked_texels(scene, baked->through.path,
+                               {.texel_size_m = texel_size_m,
+                                .bits = bits(),
+                                .most_pairs = 16,
+                                .ignore_alpha = ignore_alpha,
+                                .resume_file = {}},
+                               {.lit_sides_only = true, .fine_parts = fine_parts()}, progress);
         baked->finder.emplace(baked->texels);
         baked_ = std::move(baked);
     }
@@ -118,27 +157,29 @@ private:
     void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
                  std::span<float> out, Progress& progress) override {
         std::ranges::fill(out, 1.0f);
-        if (!(area_m2_ > 0.0)) return;
         const auto& sun = std::get<DirectionalLight>(frame.light);
         const DVec3 to_light(sun.to_light_ws);
-        if (!baked_ || baked_->ignore_alpha != frame.ignore_alpha ||
-            bake::step_on(baked_->through, to_light, kOnCircle_rad) < 0.0) {
+        if (!is_baked_for(sun, frame.ignore_alpha))
             bake_for(frame.scene, sun, frame.ignore_alpha, progress);
-        }
-        const LightWindow window{.at_step = bake::step_on(baked_->through, to_light, kOnCircle_rad),
-                                 .width_steps = static_cast<double>(sun.angular_diameter_rad) *
-                                                baked_->through.steps_per_rad,
-                                 .codes_per_step = codes_per_step(BakeBits::sixteen),
-                                 .even = options_.weight == Weight::even};
+        bake::LightOnPath light;
+        light.along_ws =
+            glm::normalize(glm::cross(baked_->through.path.pole_ws, glm::normalize(to_light)));
+        light.across_ws = glm::cross(glm::normalize(to_light), light.along_ws);
+        light.window = {.at_step = bake::step_on(baked_->through, to_light, kOnCircle_rad),
+                        .width_steps = static_cast<double>(sun.angular_diameter_rad) *
+                                       baked_->through.steps_per_rad,
+                        .codes_per_step = codes_per_step(bits()),
+                        .even = options_.weight == Weight::even};
         parallel_for(
             receivers.size(), kReceiversPerTask,
             [&](std::size_t first, std::size_t last) {
                 for (std::size_t i = first; i < last; ++i) {
                     if (!receivers[i].exists()) continue;
-                    const lightmap::Facet* facet = baked_->finder->facet_of(receivers[i]);
+                    const lightmap::Facet* facet =
+                        baked_->finder ? baked_->finder->facet_of(receivers[i]) : nullptr;
                     out[i] = facet == nullptr ? 0.0f
                                               : static_cast<float>(baked_->finder->visibility(
-                                                    *facet, receivers[i], options_.lookup, window));
+                                                    *facet, receivers[i], options_.lookup, light));
                 }
             },
             "looking up intervals", &progress);
@@ -146,7 +187,7 @@ private:
 
     void describe_texels(std::span<const trace::Receiver> receivers,
                          Visibility::Impl& out) override {
-        if (!baked_ || receivers.empty()) return;
+        if (!baked_ || !baked_->finder || receivers.empty()) return;
         Image sizes_m(out.size(), 1);
         for (std::size_t i = 0; i < receivers.size(); ++i) {
             if (!receivers[i].exists()) continue;
@@ -162,13 +203,18 @@ private:
     std::uint64_t memory_bytes() const override {
         std::uint64_t bytes = 0;
         if (!baked_) return bytes;
-        for (const IntervalPage& page : baked_->texels.pages)
-            bytes += (page.rises.size() + page.falls.size()) * sizeof(std::uint16_t);
+        const auto add = [&](const IntervalPage& page, const bake::SamplePlaces& places) {
+            bytes += (page.rises.size() + page.falls.size()) * sizeof(std::uint16_t) +
+                     places.size() * sizeof(bake::SamplePlace);
+        };
+        const bake::BakedTexels& texels = baked_->texels;
+        for (std::size_t i = 0; i < texels.pages.size(); ++i)
+            add(texels.pages[i], texels.places[i]);
+        add(texels.fine.samples, texels.fine.places);
         return bytes;
     }
 
     Options options_;
-    double area_m2_ = 0.0;
     std::unique_ptr<Baked> baked_;
 };
 

@@ -1,0 +1,83 @@
+#include "bake/light_day.h"
+
+#include <gnomon/error.h>
+
+#include "bake/unfinished.h"
+#include "base/part_progress.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace gnomon::bake {
+
+namespace {
+
+/// Texels between two looks at whether to stop: a second or so of work.
+constexpr std::size_t kPartTexels = 1 << 16;
+
+constexpr std::string_view kTask = "baking the sun";
+
+/// What the steps of a part take of its time, the rest being exact times; for the progress alone.
+constexpr double kStepsShare = 0.6;
+
+}  // namespace
+
+LightDay::LightDay(Scene scene, BakePath path, BakeOptions options, Progress& progress)
+    : scene_(std::move(scene)),
+      path_(std::move(path)),
+      options_(std::move(options)),
+      frame_(interval::frame_around(path_.pole_ws)),
+      steps_(path_.to_light_ws, frame_),
+      tree_(scene_, frame_, options_.ignore_alpha, progress) {
+    if (options_.bits == BakeBits::sixteen)
+        exact_.emplace(scene_, path_.to_light_ws, options_.ignore_alpha, progress);
+}
+
+std::vector<LitTimes> LightDay::times(std::span<const trace::Receiver> receivers,
+                                      Progress& progress) const {
+    const double steps_share = exact_ ? kStepsShare : 1.0;
+    PartProgress steps(progress, kTask, 0.0, steps_share);
+    const interval::DayMasks masks = interval::bake(tree_, steps_, receivers, steps);
+    const int codes = codes_per_step(options_.bits);
+    std::vector<LitTimes> times(receivers.size());
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        for (const interval::Interval& lit : interval::intervals(masks.mask(i))) {
+            times[i].push_back({static_cast<std::uint16_t>(lit.rise * codes),
+                                static_cast<std::uint16_t>(lit.fall * codes)});
+        }
+    }
+    PartProgress exact(progress, kTask, steps_share, 1.0 - steps_share);
+    if (exact_) exact_->refine(receivers, times, exact);
+    return times;
+}
+
+std::vector<LitTimes> LightDay::kept_times(std::span<const trace::Receiver> receivers,
+                                           Progress& progress) const {
+    const bool is_kept = !options_.resume_file.empty();
+    const Unfinished unfinished(options_.resume_file,
+                                is_kept ? fingerprint(scene_, path_, options_, receivers) : 0,
+                                receivers.size());
+    std::vector<LitTimes> done = unfinished.load();
+    const auto all = static_cast<double>(receivers.size());
+    try {
+        while (done.size() < receivers.size()) {
+            const std::size_t count = std::min(kPartTexels, receivers.size() - done.size());
+            PartProgress part(progress, kTask, static_cast<double>(done.size()) / all,
+                              static_cast<double>(count) / all);
+            std::ranges::move(times(receivers.subspan(done.size(), count), part),
+                              std::back_inserter(done));
+        }
+    } catch (const Error&) {
+        unfinished.save(done);
+        throw;
+    }
+    try {
+        unfinished.save(done);
+    } catch (const Error&) {
+        // The bake may still fit, which is smaller; else that will be told.
+    }
+    return done;
+}
+
+}  // namespace gnomon::bake

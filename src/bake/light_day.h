@@ -1,0 +1,47 @@
+#pragma once
+
+#include <gnomon/bake.h>
+
+#include "bake/exact_times.h"
+#include "bake/interval_codes.h"
+#include "interval/bake.h"
+#include "trace/receiver.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gnomon::bake {
+
+/// One scene and one path of the light, ready to be asked when receivers see it.
+class LightDay {
+public:
+    /// Keeps the scene alive. Throws Error{machine} when memory runs out, Error{cancelled}.
+    LightDay(Scene scene, BakePath path, BakeOptions options, Progress& progress);
+
+    const Scene& scene() const { return scene_; }
+    const BakePath& path() const { return path_; }
+    int codes() const { return path_.steps() * codes_per_step(options_.bits); }  ///< of the path
+
+    /// When each receiver sees the light. Throws Error{cancelled}.
+    std::vector<LitTimes> times(std::span<const trace::Receiver> receivers,
+                                Progress& progress) const;
+
+    /// The same, found in parts. What is done goes to the options' `resume_file`, if that has a
+    /// name, when the work is stopped or fails, and when all is done; a later call for the same
+    /// begins with it. Throws Error{input} when the file is of another bake, Error{machine} before
+    /// the work when the file would not fit on its disk, Error{cancelled}.
+    std::vector<LitTimes> kept_times(std::span<const trace::Receiver> receivers,
+                                     Progress& progress) const;
+
+private:
+    Scene scene_;
+    BakePath path_;
+    BakeOptions options_;
+    interval::Frame frame_;
+    interval::DayPath steps_;
+    interval::Tree tree_;
+    std::optional<ExactTimes> exact_;
+};
+
+}  // namespace gnomon::bake
