@@ -32,6 +32,9 @@ NO_BIAS = ("--shadow_map.receiver_plane false --shadow_map.bias_constant 0 --sha
            "--shadow_map.normal_offset 0 --shadow_map.caster_error 0")
 BLURRED = "--technique blurred_projection --blurred_projection.blur 8"
 FINE = "--shadow_map.map_size 4096"
+INTERVALS = "--technique occlusion_interval_maps"
+CHAPTER_13 = ("--occlusion_interval_maps.lookup nearest --occlusion_interval_maps.weight even "
+              "--occlusion_interval_maps.bits 8")
 VERTEX = "--technique vertex_occlusion"
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
@@ -89,6 +92,9 @@ PICTURES = {
         "courtyard", "courtyard --technique shadow_volumes", "courtyard --ignore-alpha"]),
     "shadow_volumes-hard": ("1280x720", (0, 430, 480, 670), 2, [
         "gas-station", "gas-station --technique shadow_volumes"]),
+    "occlusion_interval_maps": ("1280x720", (380, 300, 900, 540), 2, ["gas-station"] + [
+        f"gas-station {INTERVALS} {lookup}" for lookup in (
+            CHAPTER_13, "--occlusion_interval_maps.lookup interpolated", "")]),
     "vertex_occlusion": ("1280x720", (200, 340, 860, 580), 2, ["courtyard"] + [
         f"courtyard {VERTEX} --vertex_occlusion.tessellate {edge_m}" for edge_m in (0, 0.3, 0.03)]),
     "vertex_occlusion-walls": ("1280x720", (620, 440, 860, 560), 3, ["courtyard"] + [
