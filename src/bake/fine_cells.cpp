@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace gnomon::bake {
 
@@ -19,6 +20,9 @@ using lightmap::dvec2;
 
 /// Samples keep this from borders of the surface, where others meet it and rays run along them.
 constexpr double kFromBorder_texels = 0.1;
+
+/// For each cell, fine or not: under trees nearly all are fine, and have fewer parts instead.
+constexpr std::size_t kMostSamples = 2;
 
 std::uint64_t key_of(std::uint32_t chart, int x, int y) {
     // Cells begin at texel -1; a page has less than 2^16 texels along its side.
@@ -126,17 +130,27 @@ FourTexels texels_around(const lightmap::Chart& chart, std::span<const IntervalP
 
 FineSamples fine_samples(const Scene& scene, const lightmap::Atlas& atlas,
                          std::span<const IntervalPage> pages, int parts, double path_codes) {
-    FineSamples result;
-    result.cells.parts = parts;
+    std::vector<std::pair<std::uint32_t, Cell>> fine;  // with their charts
+    std::size_t all = 0;
     for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
         const lightmap::Chart& chart = atlas.charts[c];
-        for (const Cell& cell : touched_cells(atlas, chart)) {
+        for (Cell& cell : touched_cells(atlas, chart)) {
+            ++all;
             const FourTexels texels = texels_around(chart, pages, cell.x, cell.y);
             if (have_same_edges(pages[chart.page], texels, path_codes)) continue;
-            result.cells.first_samples.emplace(key_of(c, cell.x, cell.y),
-                                               static_cast<std::uint32_t>(result.receivers.size()));
-            add_samples(scene, atlas, cell, result);
+            fine.emplace_back(c, std::move(cell));
         }
+    }
+    FineSamples result;
+    result.cells.parts = parts;
+    const auto samples = [&] { return fine.size() * result.cells.samples_per_cell(); };
+    while (result.cells.parts > 1 && samples() > kMostSamples * all)
+        --result.cells.parts;
+    if (result.cells.parts == 1) return result;
+    for (const auto& [chart, cell] : fine) {
+        result.cells.first_samples.emplace(key_of(chart, cell.x, cell.y),
+                                           static_cast<std::uint32_t>(result.receivers.size()));
+        add_samples(scene, atlas, cell, result);
     }
     return result;
 }

@@ -37,7 +37,8 @@ FourTexels texels_around(const lightmap::Chart& chart, std::span<const IntervalP
                          int y);
 
 /// Cells that are to be fine, without what their samples see, and where those are: on the surface
-/// at or near their places on the page.
+/// at or near their places on the page. There are at most two for each cell of the atlas, and fewer
+/// parts than wanted, or none, where that would be more.
 struct FineSamples {
     FineCells cells;
     std::vector<trace::Receiver> receivers;
