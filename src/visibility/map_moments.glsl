@@ -11,6 +11,11 @@
 // lights the ground behind a caster's foot by up to 50 texels, more everywhere lightens shadows.
 const float kMomentBias = 1e-5;
 
+// Of a spread over both ends and the middle, as Peters and Klein choose it for [-1, 1], here for [0, 1]. One
+// over the ends alone would leave a map that is at an end, as where casters are clamped to its near plane,
+// without the three places that the problem needs.
+const vec4 kSpreadMoments = vec4(0.5, 0.34375, 0.265625, 0.2265625);
+
 // exp(c d) of a distance from -1 to 1, over exp(c).
 float warped(float along, float exponent) { return exp(2.0 * exponent * (along - 1.0)); }
 
@@ -41,7 +46,7 @@ float lit_by_warped_variance(vec4 moments, float along, float exponent, float le
 // Of all distributions with these four moments, the one with the least before the receiver: Hamburger's
 // problem, by a Cholesky factorisation of the moments' matrix and the roots of a quadratic.
 float lit_by_moments(vec4 moments, float along) {
-    vec4 b = mix(moments, vec4(0.5), kMomentBias);
+    vec4 b = mix(moments, kSpreadMoments, kMomentBias);
     float l32_d22 = b.z - b.x * b.y;
     float d22 = b.y - b.x * b.x;
     float variance_of_square = b.w - b.y * b.y;
