@@ -1,5 +1,6 @@
 #include "bake/exact_times.h"
 
+#include <gnomon/error.h>
 #include <gnomon/sun.h>
 
 #include "bake/fine_path.h"
@@ -7,10 +8,13 @@
 #include "bake/thread_limit.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace gnomon::bake {
@@ -175,6 +179,25 @@ TEST(ExactTimes, AreTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(LightDay(boxes(), path, options, silent)
                   .kept_times(std::span(points).subspan(7, 20), silent),
               std::vector(all.begin() + 7, all.begin() + 27));
+}
+
+TEST(LightDay, KeptTimesAreNotFoundAgain) {
+    /// Refuses whatever takes time.
+    struct AtOnce : Progress {
+        bool cancelled() const override { return true; }
+    };
+    const BakePath path = bake_path(sun_of(2026y / March / 21, 100), "", "");
+    const std::vector<Receiver> points = floor_points();
+    const auto file =
+        std::filesystem::temp_directory_path() / ("gnomon_kept_times" + std::to_string(::getpid()));
+    std::filesystem::remove(file);
+    Progress silent;
+    const LightDay light(boxes(), path, {.bits = BakeBits::sixteen, .resume_file = file}, silent);
+    AtOnce at_once;
+    EXPECT_THROW(light.kept_times(points, at_once), Error);
+    const std::vector<LitTimes> first = light.kept_times(points, silent);
+    EXPECT_EQ(light.kept_times(points, at_once), first);
+    std::filesystem::remove(file);
 }
 
 // What 8 bits tell is at most half a step from it.
