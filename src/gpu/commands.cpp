@@ -284,6 +284,14 @@ void Commands::dispatch(Extent size, unsigned group_size) {
                   (size.height + group_size - 1) / group_size, 1);
 }
 
+void Commands::clear(Image& image, const VkClearColorValue& value) {
+    use(image, Use::copy_target);
+    const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                                      VK_REMAINING_ARRAY_LAYERS};
+    vkCmdClearColorImage(handle_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
+                         &all);
+}
+
 void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t bytes) {
     const VkBufferCopy region{0, 0, bytes};
     vkCmdCopyBuffer(handle_, source.handle(), target.handle(), 1, &region);

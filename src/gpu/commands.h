@@ -126,6 +126,9 @@ public:
         update(target, std::as_bytes(std::span(&value, 1)));
     }
 
+    /// All of a colour image; it is in use as the target of copies afterwards.
+    void clear(Image& image, const VkClearColorValue& value);
+
     void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes);
     void copy(const Buffer& source, const Image& target);
     void copy(const Image& source, const Buffer& target);

@@ -118,7 +118,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     const gpu::Pass pass(commands, "lookup");
     lookup_.record(commands, input.receivers, input.frame.light, layers_,
                    contents_ ? contents_->image() : map_.image(), is_bounded ? &bounds_ : nullptr,
-                   visibility);
+                   survey_.get(), visibility);
 }
 
 void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {

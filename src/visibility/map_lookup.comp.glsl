@@ -5,8 +5,9 @@
 // Receivers against a map of any projection and content and up to eight layers.
 
 #include "visibility/map_lookup.shared.h"
+#include "visibility/receiver_survey.shared.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = kSurveyBlock_px, local_size_y = kSurveyBlock_px) in;
 layout(constant_id = 1) const uint kFilter = kFilterBox4x4;
 layout(constant_id = 2) const uint kContent = kContentDepth;
 layout(constant_id = 3) const uint kTaps = 16u;  // of filters that have no number of their own
@@ -14,6 +15,7 @@ layout(constant_id = 4) const uint kLayerCount = 1u;
 layout(constant_id = 5) const uint kAffine = 1u;  // all texels of a layer are of one size
 layout(constant_id = 6) const uint kLayerChoice = kChooseByDistance;
 layout(constant_id = 7) const uint kProof = kProofNone;
+layout(constant_id = 8) const uint kListed = 0u;  // only blocks of pixels that are listed
 
 #include "visibility/map_bias.glsl"
 #include "visibility/map_bounds.glsl"
@@ -27,6 +29,7 @@ layout(set = 0, binding = 2, r32f) uniform writeonly image2D visibility;
 layout(set = 0, binding = 3) uniform sampler2DArray map;
 layout(set = 0, binding = 4, scalar) uniform Frame { MapFrame frame; };
 layout(set = 0, binding = 5) uniform sampler2DArray bounds;
+layout(set = 0, binding = 6, scalar) readonly buffer Blocks { uint blocks[]; };
 layout(push_constant, scalar) uniform Push { ReceiverPush push; };
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
@@ -228,10 +231,16 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
     return inside ? lit : 1.0;
 }
 
+uvec2 pixel_looked_at() {
+    if (kListed == 0u) return gl_GlobalInvocationID.xy;
+    uint block = blocks[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
+    return kSurveyBlock_px * uvec2(block & 0xffffu, block >> 16) + gl_LocalInvocationID.xy;
+}
+
 // Without branches: software drivers walk through both sides of each, and read constants and textures
 // slowly within.
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
+    uvec2 pixel = pixel_looked_at();
     ivec2 at = ivec2(min(pixel, push.size - 1u));
     float depth = texelFetch(depths, at, 0).x;
     vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, max(depth, kLeastDepth));

@@ -3,6 +3,7 @@
 #include "map_lookup.comp.spv.h"
 #include "visibility/light_shape.h"
 #include "visibility/map_bounds.h"
+#include "visibility/receiver_survey.shared.h"
 
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/vector_double4.hpp>
@@ -21,7 +22,7 @@ namespace gnomon {
 
 namespace {
 
-constexpr unsigned kGroupSize = 8;
+constexpr unsigned kGroupSize = shared::kSurveyBlock_px;
 
 // What neighbouring facets of a curved surface rise above a receiver's plane, of what the plane
 // gains itself, found by sweeping over scenes and suns (bench/bias_sweep): less brings acne where
@@ -35,9 +36,16 @@ constexpr float kLeastDeviation = 2e-4f;
 gpu::ComputePipelineInfo lookup_info(std::vector<std::uint32_t> constants) {
     using enum gpu::BindingType;
     return {.code = shaders::map_lookup_comp,
-            .layout = {{texture, storage_image, storage_image, texture, uniform_buffer, texture},
+            .layout = {{texture, storage_image, storage_image, texture, uniform_buffer, texture,
+                        storage_buffer},
                        sizeof(shared::ReceiverPush)},
             .constants = std::move(constants)};
+}
+
+gpu::Buffer block_buffer(const gpu::Device& device, std::uint64_t bytes) {
+    return gpu::Buffer(device, bytes,
+                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                       gpu::Placement::device);
 }
 
 /// For positions from `eye_ws`.
@@ -154,9 +162,10 @@ MapLookup::MapLookup(const gpu::Device& device, const ReadingOptions& reading,
       nearest_(device, {}),
       frame_(device, sizeof(shared::MapFrame),
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-             gpu::Placement::device) {}
+             gpu::Placement::device),
+      blocks_(block_buffer(device, sizeof(std::uint32_t))) {}
 
-LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::uint32_t proof) {
+LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::uint32_t proof, bool listed) {
     const bool affine = std::ranges::all_of(
         layers.layers, [](const LookupLayer& layer) { return layer.fit.affine; });
     const std::vector<std::uint32_t> constants{static_cast<std::uint32_t>(reading_.filter),
@@ -165,15 +174,33 @@ LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::uint32_t pr
                                                static_cast<std::uint32_t>(layers.layers.size()),
                                                affine ? 1u : 0u,
                                                static_cast<std::uint32_t>(layers.choice),
-                                               proof};
+                                               proof,
+                                               listed ? 1u : 0u};
     LookupPipeline& pipeline = pipelines_[constants];
     if (!pipeline) pipeline = LookupPipeline(device_, lookup_info(constants));
     return pipeline;
 }
 
+// As many groups as there are blocks, and a few more to fill their rectangle, which do the last one
+// again.
+Extent MapLookup::list(gpu::Commands& commands, const ReceiverSurvey& survey) {
+    constexpr unsigned kMostInRow = 4096;  // devices take 65535
+    std::vector<std::uint32_t> blocks = survey.blocks();
+    if (blocks.empty()) return {};
+    const auto count = static_cast<unsigned>(blocks.size());
+    const unsigned width = std::min(count, kMostInRow);
+    const Extent groups{width, (count + width - 1) / width};
+    blocks.resize(std::size_t{groups.width} * groups.height, blocks.back());
+    const std::span<const std::byte> bytes = std::as_bytes(std::span<const std::uint32_t>(blocks));
+    if (blocks_.size_bytes() < bytes.size()) blocks_ = block_buffer(device_, bytes.size());
+    commands.update(blocks_, bytes);
+    return groups;
+}
+
 void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receivers,
                        const Light& light, const LookupLayers& lookup_layers, const gpu::Image& map,
-                       const MapBounds* bounds, gpu::Image& visibility) {
+                       const MapBounds* bounds, const ReceiverSurvey* survey,
+                       gpu::Image& visibility) {
     const std::vector<LookupLayer>& layers = lookup_layers.layers;
     assert(!layers.empty() && layers.size() <= shared::kMaxMapLayers);
     shared::MapFrame frame{};
@@ -192,18 +219,25 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
             i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m);
     }
     commands.update(frame_, frame);
+    if (survey != nullptr) commands.clear(visibility, {.float32 = {1.0f, 0.0f, 0.0f, 0.0f}});
+    const Extent groups = survey != nullptr ? list(commands, *survey) : Extent{};
     commands.use(visibility, gpu::Use::storage_write);
     const std::uint32_t proof = bounds == nullptr ? shared::kProofNone
                                 : shows_proven_   ? shared::kProofShown
                                                   : shared::kProofSkips;
-    const gpu::Pipeline& lookup = pipeline(lookup_layers, proof).of(light);
+    const gpu::Pipeline& lookup = pipeline(lookup_layers, proof, survey != nullptr).of(light);
     commands.bind(
         lookup, {gpu::Texture{receivers.depth.view(), &nearest_},
                  gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},
                  gpu::Texture{map.view(), &nearest_}, gpu::UniformBuffer{&frame_},
-                 gpu::Texture{(bounds == nullptr ? map : bounds->image()).view(), &nearest_}});
+                 gpu::Texture{(bounds == nullptr ? map : bounds->image()).view(), &nearest_},
+                 gpu::StorageBuffer{&blocks_}});
     commands.push(lookup, receiver_push(receivers, light));
-    commands.dispatch(receivers.size, kGroupSize);
+    if (survey != nullptr) {
+        commands.dispatch(groups, 1);
+    } else {
+        commands.dispatch(receivers.size, kGroupSize);
+    }
 }
 
 }  // namespace gnomon

@@ -5,6 +5,7 @@
 #include "visibility/light_fit.h"
 #include "visibility/lookup_pipeline.h"
 #include "visibility/map_lookup.shared.h"
+#include "visibility/receiver_survey.h"
 
 #include <cstdint>
 #include <map>
@@ -90,19 +91,21 @@ public:
     MapLookup(const gpu::Device& device, const ReadingOptions& reading, const BiasOptions& bias);
 
     /// `bounds`: of the map's tiles, where there are some; filters are skipped by them, which
-    /// changes no pixel.
+    /// changes no pixel. `survey`: of the same receivers, where there is one; pixels without
+    /// receivers are then not looked at.
     void record(gpu::Commands& commands, const raster::Receivers& receivers, const Light& light,
                 const LookupLayers& layers, const gpu::Image& map, const MapBounds* bounds,
-                gpu::Image& visibility);
+                const ReceiverSurvey* survey, gpu::Image& visibility);
 
     /// From now on, where there are bounds: 1 and 0 where they prove a receiver lit and dark, a
     /// half where it is filtered.
     void show_proven() { shows_proven_ = true; }
 
-    std::uint64_t memory_bytes() const { return frame_.memory_bytes(); }
+    std::uint64_t memory_bytes() const { return frame_.memory_bytes() + blocks_.memory_bytes(); }
 
 private:
-    LookupPipeline& pipeline(const LookupLayers& layers, std::uint32_t proof);
+    LookupPipeline& pipeline(const LookupLayers& layers, std::uint32_t proof, bool listed);
+    Extent list(gpu::Commands& commands, const ReceiverSurvey& survey);
 
     const gpu::Device& device_;
     ReadingOptions reading_;
@@ -110,6 +113,7 @@ private:
     std::map<std::vector<std::uint32_t>, LookupPipeline> pipelines_;  // by constants
     gpu::Sampler nearest_;
     gpu::Buffer frame_;
+    gpu::Buffer blocks_;  // of pixels that are looked at
     bool shows_proven_ = false;
 };
 

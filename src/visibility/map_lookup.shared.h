@@ -10,7 +10,7 @@ namespace gnomon::shared {
 const uint kMaxMapLayers = 8u;
 
 // Specialization constants of map_lookup.comp.glsl, from 1: kFilter, kContent, kTaps, kLayerCount,
-// kAffine, kLayerChoice, kProof; of map_content.comp.glsl: kContent
+// kAffine, kLayerChoice, kProof, kListed; of map_content.comp.glsl: kContent
 
 const uint kFilterNearest = 0u;
 const uint kFilterHardware2x2 = 1u;

@@ -135,6 +135,11 @@ Seen ReceiverSurvey::seen() {
     const Extent blocks = blocks_of(size_);
     std::vector<shared::SurveyedBlock> found(std::size_t{blocks.width} * blocks.height);
     std::memcpy(found.data(), blocks_.mapped(), blocks_.size_bytes());
+    with_receivers_.clear();
+    for (std::uint32_t i = 0; i < found.size(); ++i) {
+        if (found[i].nearest > 0.0f)
+            with_receivers_.push_back(i % blocks.width | i / blocks.width << 16);
+    }
     const Picture picture(camera_, size_);
     std::vector<SeenTile> tiles;
     for (unsigned y = 0; y < blocks.height; y += kTileBlocks) {

@@ -5,6 +5,7 @@
 #include "visibility/seen.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace gnomon {
 
@@ -20,6 +21,9 @@ public:
     void record(gpu::Commands& commands, const raster::Receivers& receivers);
     /// When the device has finished.
     Seen seen();
+    /// After seen(): the blocks of kSurveyBlock_px that have receivers, x in the lower 16 bits and
+    /// y in the upper.
+    const std::vector<std::uint32_t>& blocks() const { return with_receivers_; }
 
     std::uint64_t memory_bytes() const { return blocks_.memory_bytes(); }
 
@@ -28,6 +32,7 @@ private:
     gpu::Pipeline pipeline_;
     gpu::Sampler nearest_;
     gpu::Buffer blocks_;
+    std::vector<std::uint32_t> with_receivers_;
     Camera camera_;
     Extent size_;
 };
