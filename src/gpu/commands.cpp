@@ -399,8 +399,10 @@ void Submission::submit_and_wait() {
                                .pCommandBufferInfos = &commands};
     check(vkResetFences(device_.handle(), 1, &fence_), "resetting a fence");
     check(vkQueueSubmit2(device_.queue(), 1, &submit, fence_), "submitting work");
-    check(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, kTimeoutNs),
-          "waiting for the device");
+    const VkResult waited = vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, kTimeoutNs);
+    // Nothing may be freed that the device still writes to.
+    if (waited != VK_SUCCESS) vkDeviceWaitIdle(device_.handle());
+    check(waited, "waiting for the device");
 }
 
 void upload(const Device& device, Buffer& target, std::span<const std::byte> bytes) {

@@ -2,6 +2,10 @@
 
 #include "base/check.h"
 
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
 namespace gnomon {
 
 namespace {
@@ -51,8 +55,13 @@ PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& see
         std::vector<Box3> receivers_ws;
         for (const SeenTile& tile : seen.tiles)
             receivers_ws.push_back(tile.bounds);
-        layer.casters.keep_before(
-            ReceiverMask(fit, receivers_ws, static_cast<double>(options_.margin_texels())));
+        auto margin_texels = static_cast<double>(options_.margin_texels());
+        // A disc in the world is longer along the axis of the shorter texels.
+        const TexelSteps steps = fit.texel_steps();
+        const double u_m = glm::length(steps.u_ws), v_m = glm::length(steps.v_ws);
+        if (options_.filter == MapFilter::pcss)
+            margin_texels *= std::max(u_m, v_m) / std::min(u_m, v_m);
+        layer.casters.keep_before(ReceiverMask(fit, receivers_ws, margin_texels));
     }
     return layer;
 }
@@ -104,6 +113,8 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                                 .multi_draw = options_.multi_draw,
                                 .layered = options_.layered});
     }
+    for (std::size_t i = 0; i < fits.size(); ++i)
+        fits[i] = map_.drawn_fit(i, fits[i]);
     if (contents_ && (is_drawn || !contents_->measures_as(fits))) {
         const gpu::Pass pass(commands, "content");
         contents_->record(commands, map_.image(), fits);

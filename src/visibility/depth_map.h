@@ -36,6 +36,12 @@ public:
                 std::span<const MapLayer> layers, const CasterOptions& options);
 
     const gpu::Image& image() const { return image_; }
+    /// Of a layer that was planned as `planned`: one that is not needed may hold what an earlier
+    /// frame drew into it.
+    LightFit drawn_fit(std::size_t layer, LightFit planned) const {
+        if (held_[layer]) planned.clip_from_world = held_[layer]->fit.clip_from_world;
+        return planned;
+    }
     std::uint64_t memory_bytes() const {
         return image_.memory_bytes() + still_.memory_bytes() + scratch_.memory_bytes() +
                instances_.memory_bytes() + commands_.memory_bytes();

@@ -80,7 +80,9 @@ public:
         Box3 bounds;
         bounds.include(Vec3(eye_ws_ + glm::max(low - rounding_m, DVec3(found.low_es))));
         bounds.include(Vec3(eye_ws_ + glm::min(high + rounding_m, DVec3(found.high_es))));
-        return {bounds, {near_m - rounding_m, far_m + rounding_m}};
+        return {bounds,
+                {std::max(near_m - rounding_m, static_cast<double>(camera_.near_m)),
+                 far_m + rounding_m}};
     }
 
 private:
