@@ -55,11 +55,12 @@ public:
             for (std::uint32_t p = 0; p < mesh.triangles.size(); ++p)
                 add({i, p});
         }
+        corners_.emplace_back(0.0f);  // Embree reads 16 bytes of the last corner
         embree_ = rtcNewScene(device_);
         rtcSetSceneFlags(embree_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   corners_.data(), 0, sizeof(Vec3), corners_.size());
+                                   corners_.data(), 0, sizeof(Vec3), corners_.size() - 1);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    indices_.data(), 0, sizeof(UVec3), indices_.size());
         rtcCommitGeometry(geometry);

@@ -117,10 +117,10 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
                         .most_pairs = flags.pairs,
                         .ignore_alpha = flags.ignore_alpha};
     const std::filesystem::path part = flags.output + ".unfinished";
+    const Scene scene = load(flags.scene, session, progress);
     std::error_code ignored;
     if (!flags.resume) std::filesystem::remove(part, ignored);
     options.resume_file = part;
-    const Scene scene = load(flags.scene, session, progress);
     try {
         const IntervalBake bake = bake_intervals(scene, path, options, progress);
         progress.clear();

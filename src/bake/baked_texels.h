@@ -47,7 +47,8 @@ enum class TexelLookup {
 /// A light at a moment of its path.
 struct LightOnPath {
     LightWindow window;
-    DVec3 along_ws{0.0}, across_ws{0.0};  ///< unit vectors: where it goes, and square to that
+    /// Unit vectors: where it goes, and square to that; zero when it stands still.
+    DVec3 along_ws{0.0}, across_ws{0.0};
 };
 
 /// Finds receivers' places on the pages.

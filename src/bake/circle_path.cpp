@@ -53,15 +53,11 @@ PathThrough circle_through(DVec3 to_light_ws, DVec3 pole_ws, DVec3 up_ws, int st
     result.path.pole_ws = circle.pole;
     if (circle.radius < kLeastRadius) {
         result.path.to_light_ws = {to_light};
-        result.at_step = 0.5;
         return result;
     }
     const double half = half_arc(circle, to_light, up_ws);
     for (int i = 0; i < steps; ++i)
         result.path.to_light_ws.push_back(circle.at(half * (2.0 * (i + 0.5) / steps - 1.0)));
-    const double angle =
-        std::atan2(glm::dot(to_light, circle.east), glm::dot(to_light, circle.noon));
-    result.at_step = steps * 0.5 * (angle / half + 1.0);
     result.steps_per_rad = steps / (2.0 * half * circle.radius);
     return result;
 }

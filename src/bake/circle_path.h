@@ -4,10 +4,9 @@
 
 namespace gnomon::bake {
 
-/// A path through one direction, and where on it that is.
+/// A path through one direction.
 struct PathThrough {
     BakePath path;
-    double at_step = 0.0;
     double steps_per_rad = 0.0;  ///< of the light's way across the sky
 };
 

@@ -21,6 +21,15 @@ constexpr std::string_view kTask = "baking the sun";
 /// What the steps of a part take of its time, the rest being exact times; for the progress alone.
 constexpr double kStepsShare = 0.6;
 
+/// A full disk is no reason to lose the error that stopped the work, or the bake itself, which is
+/// smaller and may still fit.
+void save_if_possible(const Unfinished& unfinished, std::span<const LitTimes> times) {
+    try {
+        unfinished.save(times);
+    } catch (const Error&) {
+    }
+}
+
 }  // namespace
 
 LightDay::LightDay(Scene scene, BakePath path, BakeOptions options, Progress& progress)
@@ -68,15 +77,11 @@ std::vector<LitTimes> LightDay::kept_times(std::span<const trace::Receiver> rece
             std::ranges::move(times(receivers.subspan(done.size(), count), part),
                               std::back_inserter(done));
         }
-    } catch (const Error&) {
-        unfinished.save(done);
+    } catch (...) {
+        save_if_possible(unfinished, done);
         throw;
     }
-    try {
-        unfinished.save(done);
-    } catch (const Error&) {
-        // The bake may still fit, which is smaller; else that will be told.
-    }
+    save_if_possible(unfinished, done);
     return done;
 }
 

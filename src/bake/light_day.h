@@ -28,9 +28,9 @@ public:
                                 Progress& progress) const;
 
     /// The same, found in parts. What is done goes to the options' `resume_file`, if that has a
-    /// name, when the work is stopped or fails, and when all is done; a later call for the same
-    /// begins with it. Throws Error{input} when the file is of another bake, Error{machine} before
-    /// the work when the file would not fit on its disk, Error{cancelled}.
+    /// name and there is room, when the work is stopped or fails, and when all is done; a later
+    /// call for the same begins with it. Throws Error{input} when the file is of another bake,
+    /// Error{machine} before the work when the file would not fit on its disk, Error{cancelled}.
     std::vector<LitTimes> kept_times(std::span<const trace::Receiver> receivers,
                                      Progress& progress) const;
 

@@ -20,7 +20,7 @@ constexpr std::uint64_t kTexel_bytes = 16;
 
 /// The beginning of the file. The number of intervals of each texel follows, then the intervals.
 struct Header {
-    std::array<char, 16> magic{"gnomon part 2\n"};
+    std::array<char, 16> magic{"gnomon part 3\n"};
     std::uint64_t fingerprint = 0;
     std::uint64_t texels = 0;     ///< that are done
     std::uint64_t intervals = 0;  ///< of all of them
@@ -51,6 +51,23 @@ public:
 private:
     std::uint64_t value_ = 0xcbf29ce484222325;
 };
+
+/// Of where light passes through masked materials.
+void add_holes(const Scene& scene, Hash& hash) {
+    for (const Material& material : scene.materials()) {
+        hash.add(std::span(&material.alpha_cutoff, 1));
+        hash.add(std::span(&material.base_color, 1));
+        hash.add(std::span(&material.base_color_texture, 1));
+        hash.add(std::span(&material.uv_scale_rotation, 1));
+        hash.add(std::span(&material.uv_offset, 1));
+    }
+    for (const Texture& texture : scene.textures()) {
+        hash.add(std::span(&texture.size, 1));
+        hash.add(std::span(&texture.wrap_u, 1));
+        hash.add(std::span(&texture.wrap_v, 1));
+        hash.add(std::span(texture.rgba));
+    }
+}
 
 }  // namespace
 
@@ -127,17 +144,19 @@ std::uint64_t fingerprint(const Scene& scene, const BakePath& path, const BakeOp
         hash.add(std::span(mesh.positions));
         hash.add(std::span(mesh.triangles));
         hash.add(std::span(mesh.texcoords));
+        hash.add(std::span(&mesh.material, 1));
     }
-    for (const Instance& instance : scene.instances())
+    for (const Instance& instance : scene.instances()) {
+        hash.add(std::span(&instance.mesh, 1));
         hash.add(std::span(&instance.world_from_local, 1));
-    if (!options.ignore_alpha) {
-        for (const Texture& texture : scene.textures())
-            hash.add(std::span(texture.rgba));
     }
+    if (!options.ignore_alpha) add_holes(scene, hash);
     hash.add(std::span(path.to_light_ws));
     hash.add(std::span(&options.bits, 1));
-    for (const trace::Receiver& receiver : receivers)
+    for (const trace::Receiver& receiver : receivers) {
         hash.add(std::span(&receiver.position_ws, 1));
+        hash.add(std::span(&receiver.normal_ws, 1));
+    }
     return hash.value();
 }
 

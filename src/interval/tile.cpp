@@ -51,14 +51,16 @@ DVec3 loaded(const float (&from)[3]) {
 
 RangeTerms range_terms(const DayPath& path) {
     const DayPath::Fit& fit = path.fit();
-    const auto signed_square = [](double slope) {
-        const double clamped = std::clamp(slope, -kSteepest, kSteepest);
+    // Of slopes off by their error; that of a pole is infinite.
+    const auto signed_square = [](double slope, double errors) {
+        const double steep = std::clamp(slope, -kSteepest, kSteepest);
+        const double off = steep + errors * kSlopeError * (1.0 + std::abs(steep));
+        const double clamped = std::clamp(off, -kSteepest, kSteepest);
         return static_cast<float>(clamped * std::abs(clamped));
     };
     RangeTerms terms;
-    terms.low_slope2 = signed_square(fit.low_slope - kSlopeError * (1.0 + std::abs(fit.low_slope)));
-    terms.high_slope2 =
-        signed_square(fit.high_slope + kSlopeError * (1.0 + std::abs(fit.high_slope)));
+    terms.low_slope2 = signed_square(fit.low_slope, -1.0);
+    terms.high_slope2 = signed_square(fit.high_slope, 1.0);
     const double rate = std::abs(fit.steps_per_rad);
     // At least what all steps take, also where the sun does not move.
     const double period = std::max(2.0 * std::numbers::pi * rate, 1.0);

@@ -204,6 +204,8 @@ TEST(TileTracer, AnyPathAroundAnyPole) {
     expect(day, "drifting");
     day[17] = frame.z_ws;
     expect(day, "the pole among others");
+    expect(std::vector<DVec3>(66, frame.z_ws), "the pole alone");
+    expect(std::vector<DVec3>(3, -frame.z_ws), "the other pole alone");
     std::vector<DVec3> anywhere(70);
     std::ranges::generate(anywhere, [&] { return DVec3(random.in_box(1.0f)); });
     expect(anywhere, "no order at all");

@@ -162,9 +162,11 @@ private:
         if (!is_baked_for(sun, frame.ignore_alpha))
             bake_for(frame.scene, sun, frame.ignore_alpha, progress);
         bake::LightOnPath light;
-        light.along_ws =
-            glm::normalize(glm::cross(baked_->through.path.pole_ws, glm::normalize(to_light)));
-        light.across_ws = glm::cross(glm::normalize(to_light), light.along_ws);
+        const DVec3 along = glm::cross(baked_->through.path.pole_ws, glm::normalize(to_light));
+        if (glm::length(along) > 0.0) {  // else it stands still, and has neither
+            light.along_ws = glm::normalize(along);
+            light.across_ws = glm::cross(glm::normalize(to_light), light.along_ws);
+        }
         light.window = {.at_step = bake::step_on(baked_->through, to_light, kOnCircle_rad),
                         .width_steps = static_cast<double>(sun.angular_diameter_rad) *
                                        baked_->through.steps_per_rad,
