@@ -35,7 +35,7 @@ constexpr double kAliasing_px = 1.5;
 // Neighbours of which a texel's slant differs by more than this part are of another plane.
 constexpr double kSameSlant = 0.5;
 
-void check_image(std::string_view name, const Image& image, Extent size, unsigned channels = 1) {
+void check_image(std::string_view name, const Image& image, Extent size, int channels = 1) {
     if (image.size() != size) {
         fail_input("compare: {} is {}x{} pixels but visibility is {}x{}; give images of one size",
                    name, image.width(), image.height(), size.width, size.height);
