@@ -275,7 +275,7 @@ public:
         if constexpr (kLanes == kWidth) {
             hn::CompressStore(values, hn::RebindMask(d, lanes_), d, to);
         } else {
-            static constexpr Orders<kLanes> kOrders;
+            static constexpr Orders<static_cast<int>(hn::MaxLanes(D()))> kOrders;
             const auto order = hn::SetTableIndices(d, kOrders.lanes[bits_of(lanes_)]);
             hn::StoreU(hn::TableLookupLanes(values, order), d, to);
         }

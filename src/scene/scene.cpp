@@ -202,8 +202,8 @@ Scene Scene::moved(std::span<const InstancePose> poses) const {
     std::ranges::sort(moving);
     placement->moving.clear();
     std::ranges::set_union(moving, this->moving(), std::back_inserter(placement->moving));
-    const auto repeated = std::ranges::unique(placement->moving);
-    placement->moving.erase(repeated.begin(), repeated.end());
+    std::vector<std::uint32_t>& all = placement->moving;
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     placement->bounds = union_of(placement->instance_bounds);
     Scene result = *this;
     result.placement_ = std::move(placement);
