@@ -9,6 +9,8 @@ const DAY_PLAYS_S = 24; // how long a whole path takes
 const LONGEST_FRAME_MS = 250; // a page that was hidden goes on where it stopped
 const KEY_STEP_S = 300;
 const SLIDER_STEP_S = 60;
+const LEAST_KEY_STEPS = 50; // in a path, however short
+const LEAST_SLIDER_STEPS = 250;
 const HOUR_S = 3600;
 const TURN_RAD = Math.PI / 36; // of the camera, by a key: 5 degrees
 const NEARER = 0.9; // of its distance
@@ -28,6 +30,9 @@ class Page {
     this.bake = bake;
     this.view = view;
     this.time_s = 0.5 * (bake.begin_s + bake.end_s);
+    const path_s = bake.end_s - bake.begin_s;
+    this.keyStep_s = Math.min(KEY_STEP_S, path_s / LEAST_KEY_STEPS);
+    this.clock = (time_s) => words.clock(time_s, path_s < HOUR_S);
     this.playing = false;
     this.showsHours = false;
     this.probe = null;
@@ -42,9 +47,10 @@ class Page {
     document.title = bake.title;
     by("title").textContent = bake.title;
     by("where").textContent = [words.place(bake.place), words.date(bake.date)].filter(Boolean).join(" · ");
-    by("begin").textContent = words.clock(bake.begin_s);
-    by("end").textContent = words.clock(bake.end_s);
-    Object.assign(by("time"), { min: bake.begin_s, max: bake.end_s, step: SLIDER_STEP_S });
+    by("begin").textContent = this.clock(bake.begin_s);
+    by("end").textContent = this.clock(bake.end_s);
+    const step = Math.min(SLIDER_STEP_S, (bake.end_s - bake.begin_s) / LEAST_SLIDER_STEPS);
+    Object.assign(by("time"), { min: bake.begin_s, max: bake.end_s, step });
     by("legend-scale").style.background = falseColorGradient();
     const hours = this.most_s / HOUR_S;
     const parts = [4, 3, 2, 5].find((n) => n <= TICKS + 1 && hours % n === 0) ?? 1;
@@ -85,8 +91,8 @@ class Page {
       ArrowDown: () => this.view.turn(0, -TURN_RAD),
     };
     const actions = {
-      ArrowLeft: () => this.setTime(this.time_s - KEY_STEP_S),
-      ArrowRight: () => this.setTime(this.time_s + KEY_STEP_S),
+      ArrowLeft: () => this.setTime(this.time_s - this.keyStep_s),
+      ArrowRight: () => this.setTime(this.time_s + this.keyStep_s),
       " ": () => this.play(!this.playing),
       h: () => this.showHours(!this.showsHours),
       p: () => this.ask(this.view.pick(canvas.clientWidth >> 1, canvas.clientHeight >> 1)),
@@ -105,7 +111,7 @@ class Page {
     const { begin_s, end_s } = this.bake;
     this.time_s = Math.min(Math.max(time_s, begin_s), end_s);
     this.view.setTime(this.time_s);
-    const text = words.clock(this.time_s);
+    const text = this.clock(this.time_s);
     by("time").value = this.time_s;
     by("time").setAttribute("aria-valuetext", text);
     by("clock").textContent = text;
