@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 
 namespace gnomon {
 namespace {
@@ -199,7 +200,20 @@ std::ostream& operator<<(std::ostream& out, const Reusing& reusing) {
     return out << reusing.label;
 }
 
-class MovedReusing : public test::DeviceTest, public testing::WithParamInterface<Reusing> {};
+class MovedReusing : public test::DeviceTest, public testing::WithParamInterface<Reusing> {
+protected:
+    std::unique_ptr<Technique> reusing_technique() { return made_with("reuse_maps", true); }
+    /// Draws all of its maps for each frame.
+    std::unique_ptr<Technique> drawing_technique() { return made_with("cull_casters", false); }
+
+private:
+    std::unique_ptr<Technique> made_with(const char* name, bool value) {
+        Params params = GetParam().params;
+        params.set("map_size", 256);
+        params.set(name, value);
+        return make_technique(context(), GetParam().technique, params);
+    }
+};
 
 INSTANTIATE_TEST_SUITE_P(
     Maps, MovedReusing,
@@ -214,12 +228,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The camera rests and jumps, so that no map scrolls and all pictures are alike to the bit.
 TEST_P(MovedReusing, MapsGiveThePicturesOfMapsDrawnAnew) {
-    Params params = GetParam().params;
-    params.set("map_size", 256);
-    Params reuse = params;
-    reuse.set("reuse_maps", true);
-    params.set("cull_casters", false);
-    const auto reusing = make_technique(context(), GetParam().technique, reuse);
+    const auto reusing = reusing_technique();
     const Light light = light_for(find_technique(GetParam().technique).lights);
     const Scene scene = yard();
     for (int step = 0; step <= 2 * kSteps; ++step) {
@@ -227,7 +236,7 @@ TEST_P(MovedReusing, MapsGiveThePicturesOfMapsDrawnAnew) {
         const int at = std::min(step, 2 * kSteps - step);
         Frame frame = frame_of(at == 0 ? scene : scene.moved(poses_at(at)), light);
         if (step == 3) frame.camera = look_at({3.5f, 2.0f, 3.0f}, {0.0f, 0.3f, 0.0f});
-        const auto drawing = make_technique(context(), GetParam().technique, params);
+        const auto drawing = drawing_technique();
         EXPECT_EQ(pixels(reusing->render(frame)), pixels(drawing->render(frame))) << step;
         // What stays is drawn at first, without what moves when that moves first, and for each
         // of the camera's jumps.
@@ -238,13 +247,8 @@ TEST_P(MovedReusing, MapsGiveThePicturesOfMapsDrawnAnew) {
 
 // Scenes that are made or loaded anew for each pose, as of skins.
 TEST_P(MovedReusing, MapsFollowScenesMadeAnew) {
-    Params params = GetParam().params;
-    params.set("map_size", 256);
-    Params reuse = params;
-    reuse.set("reuse_maps", true);
-    params.set("cull_casters", false);
-    const auto reusing = make_technique(context(), GetParam().technique, reuse);
-    const auto drawing = make_technique(context(), GetParam().technique, params);
+    const auto reusing = reusing_technique();
+    const auto drawing = drawing_technique();
     const Light light = light_for(find_technique(GetParam().technique).lights);
     for (int step = 0; step <= kSteps; ++step) {
         const Frame frame = frame_of(bent_at(step), light);

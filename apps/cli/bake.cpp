@@ -30,9 +30,6 @@ in the scene) and steps=N. --light takes path=FILE.json, key frames of direction
 tells, and may take diameter=DEGREES (of the disc, default 0) and steps=N. gnomon web makes a page
 of a bake.)";
 
-constexpr int kSteps8 = 255;
-constexpr int kSteps16 = 1023;
-
 struct BakeFlags {
     std::string scene, sun, light, output;
     double texel_m = 0.1;
@@ -44,7 +41,7 @@ struct BakeFlags {
 
 /// As many as the bits allow, unless told.
 int steps_of(const KeyValues& values, int bits) {
-    const int most = bits == 8 ? kSteps8 : kSteps16;
+    const int most = most_steps(static_cast<BakeBits>(bits));
     if (!values.has("steps")) return most;
     return static_cast<int>(parse_integer(values.label("steps"), values.text("steps", ""),
                                           {1, static_cast<double>(most)}));

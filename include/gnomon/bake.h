@@ -51,6 +51,11 @@ constexpr int codes_per_step(BakeBits bits) {
     return bits == BakeBits::eight ? 1 : 64;
 }
 
+/// The steps of a path whose codes those bits hold.
+constexpr int most_steps(BakeBits bits) {
+    return bits == BakeBits::eight ? 255 : 1023;
+}
+
 struct BakeOptions {
     double texel_size_m = 0.1;
     BakeBits bits = BakeBits::eight;
@@ -65,6 +70,8 @@ struct BakeOptions {
 /// The intervals of one page's texels, in codes: times in units of 1 / codes_per_step of a step.
 struct IntervalPage {
     static constexpr std::uint16_t kNoRise = std::numeric_limits<std::uint16_t>::max();
+    static constexpr std::size_t kIntervalsPerPair = 4;
+    static constexpr int kMostPairs = 16;
 
     unsigned side_texels = 0;
     int pairs = 1;
@@ -73,6 +80,8 @@ struct IntervalPage {
     /// what is nearest.
     std::vector<std::uint16_t> rises, falls;
 };
+static_assert(most_steps(BakeBits::sixteen) * codes_per_step(BakeBits::sixteen) <
+              IntervalPage::kNoRise);
 
 struct BakeReport {
     std::uint64_t texels = 0, lit_texels = 0, intervals = 0;

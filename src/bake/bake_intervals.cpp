@@ -17,19 +17,17 @@ namespace gnomon {
 
 namespace {
 
-constexpr std::size_t kIntervalsPerPair = 4;
-constexpr int kMostPairs = 16;
+constexpr std::size_t kIntervalsPerPair = IntervalPage::kIntervalsPerPair;
 
 void check(const BakePath& path, const BakeOptions& options) {
-    const int most_steps = options.bits == BakeBits::eight ? 255 : 1023;
     if (path.to_light_ws.empty()) fail_input("bake: the light is never up: {}", path.summary);
-    if (path.steps() > most_steps) {
+    if (path.steps() > most_steps(options.bits)) {
         fail_input("bake: {} steps; with {} bits there can be at most {}", path.steps(),
-                   static_cast<int>(options.bits), most_steps);
+                   static_cast<int>(options.bits), most_steps(options.bits));
     }
-    if (options.most_pairs < 1 || options.most_pairs > kMostPairs) {
+    if (options.most_pairs < 1 || options.most_pairs > IntervalPage::kMostPairs) {
         fail_input("bake: {} pairs of textures; there can be 1 to {}", options.most_pairs,
-                   kMostPairs);
+                   IntervalPage::kMostPairs);
     }
 }
 

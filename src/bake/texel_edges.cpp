@@ -33,7 +33,7 @@ constexpr double kMostApart = 1.0 / 16.0;
 /// Of the path: shadows that pass in less, as those of wires, would make all the ground fine that
 /// they sweep. Six minutes of thirteen hours.
 constexpr double kShortest = 1.0 / 128.0;
-constexpr std::size_t kMostIntervals = 64;
+constexpr std::size_t kMostIntervals = IntervalPage::kMostPairs * IntervalPage::kIntervalsPerPair;
 constexpr std::size_t kNone = kMostIntervals;
 
 /// Times of a texel, in codes.
@@ -41,7 +41,10 @@ struct Times {
     std::array<float, kMostIntervals> values;
     std::size_t count = 0;
 
-    void add(float time) { values[count++] = time; }
+    void add(float time) {
+        assert(count < kMostIntervals);
+        values[count++] = time;
+    }
     /// The number of the nearest one, of two the earlier; kNone when there is none.
     std::size_t nearest(float time) const {
         std::size_t best = kNone;

@@ -87,7 +87,8 @@ Unfinished::Unfinished(fs::path file, std::uint64_t fingerprint, std::size_t tex
 std::vector<LitTimes> Unfinished::load() const {
     std::error_code error;
     if (file_.empty() || !fs::exists(file_, error)) return {};
-    constexpr std::uint64_t kMostIntervals = 512;  // of a texel: every other step of 1023
+    // Of a texel: every other step.
+    constexpr std::uint64_t kMostIntervals = (most_steps(BakeBits::sixteen) + 1) / 2;
     const std::vector<std::uint8_t> bytes =
         read_file(file_, file_bytes({.texels = texels_, .intervals = texels_ * kMostIntervals}));
     Header header;

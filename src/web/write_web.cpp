@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
-constexpr std::size_t kIntervalsPerPair = 4;
 
 static_assert(std::endian::native == std::endian::little, "the page's numbers are little-endian");
 
@@ -59,7 +58,7 @@ std::uint64_t most_codes(const IntervalPage& page) {
     std::vector<std::uint64_t> sums(std::size_t{page.side_texels} * page.side_texels, 0);
     for (std::size_t i = 0; i < page.rises.size(); ++i) {
         if (page.falls[i] > page.rises[i])
-            sums[i / kIntervalsPerPair % sums.size()] +=
+            sums[i / IntervalPage::kIntervalsPerPair % sums.size()] +=
                 static_cast<std::uint64_t>(page.falls[i] - page.rises[i]);
     }
     return sums.empty() ? 0 : *std::ranges::max_element(sums);

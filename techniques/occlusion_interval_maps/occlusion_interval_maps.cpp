@@ -29,8 +29,6 @@ namespace {
 
 /// A light this near to the baked circle is on it: a tenth of the sun's radius.
 constexpr double kOnCircle_rad = 5e-4;
-/// As many as a number of 8 bits tells apart.
-constexpr int kMostSteps8 = 255;
 constexpr std::size_t kReceiversPerTask = 4096;
 constexpr DVec3 kUp(0.0, 1.0, 0.0);
 
@@ -57,7 +55,7 @@ const ParamTable<Options>& param_table() {
                 "of the place: the sun turns about the pole that high in the north"),
          number("north", &Options::north_deg, -360.0, 360.0, "degrees",
                 "azimuth of true north in the scene, clockwise from -Z"),
-         integer("steps", &Options::steps, 1, 1023, "1",
+         integer("steps", &Options::steps, 1, most_steps(BakeBits::sixteen), "1",
                  "parts of the sun's way of the day; what is dark for less can be missed"),
          number("texel_size", &Options::texel_size_m, 0.0, 1000.0, "m",
                 "side of a texel; 0: such that there are as many as `texels` says"),
@@ -110,8 +108,9 @@ private:
     }
 
     int steps() const {
-        return options_.bits == TimeBits::eight ? std::min(options_.steps, kMostSteps8)
-                                                : options_.steps;
+        return options_.bits == TimeBits::eight
+                   ? std::min(options_.steps, most_steps(BakeBits::eight))
+                   : options_.steps;
     }
     /// Only where edges are asked for do finer cells count.
     int fine_parts() const {
