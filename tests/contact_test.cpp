@@ -1,5 +1,5 @@
 // Contact: where a caster stands on the ground its shadow begins, whatever the bias, the sun and
-// the filter.
+// the filter; and under eaves, where their wall begins.
 
 #include "subjects.h"
 
@@ -87,6 +87,58 @@ TEST_P(Contact, AShadowBeginsAtItsCaster) {
     EXPECT_LE(widest_texels, kMostTexels);
     RecordProperty("widest_texels", std::to_string(widest_texels));
     EXPECT_GT(judged, 5000u);
+}
+
+/// A roof stands out from a wall that a high sun hardly meets, so that a texel holds much of the
+/// wall: how lit the most lit pixel is in the part of its shadow that texels cannot explain. What
+/// hides it from so near that it could be the wall itself is left out.
+/// `judged`: how many pixels were looked at.
+float most_lit_under_eaves(const Subject& subject, std::size_t& judged) {
+    constexpr float kTop_m = 2.0f, kEaves_m = 0.3f, kDeep_m = 2.0f;
+    constexpr float kThick_m = 0.05f, kHalf_m = 3.0f;
+    constexpr float kOwn_texels = 4.0f;  // above the wall, along the light
+    constexpr float kElevation_deg = 85.0f;
+    constexpr Extent kSize{64, 256};
+    Params params = subject.params;
+    const TechniqueInfo& info = find_technique(subject.technique);
+    if (std::ranges::count(info.params(), "map_size", &ParamInfo::name) != 0)
+        params.set("map_size", 192);
+    const auto technique = make_technique(context(), subject.technique, params);
+    const Scene scene = test::make_scene(
+        {test::quad({-kHalf_m, -kTop_m, 0}, {2 * kHalf_m, 0, 0}, {0, 2 * kTop_m, 0}),
+         test::box({-kHalf_m, kTop_m, -kDeep_m}, {kHalf_m, kTop_m + kThick_m, kEaves_m})});
+    Camera camera = test::top_view({0, 0, 0}, 2 * kTop_m, 8.0f);
+    camera.view_from_world = glm::translate(Mat4(1.0f), {0, 0, -8.0f});  // towards the wall
+    const Frame frame{.scene = scene,
+                      .camera = camera,
+                      .light = sun(radians(kElevation_deg), radians(180.0f), 0.0f),
+                      .size = kSize};
+    const Visibility visibility = technique->render(frame);
+    const Image& texel_m = visibility.texel_size_m();
+    const float tangent = std::tan(radians(kElevation_deg));
+    constexpr float kPixel_m = 2 * kTop_m / static_cast<float>(kSize.height);
+    float most = 0.0f;
+    for (unsigned y = 0; y < kSize.height; ++y) {
+        for (unsigned x = 0; x < kSize.width; ++x) {
+            const float below_m = kPixel_m * (static_cast<float>(y) + 0.5f);
+            const float texel = texel_m.empty() ? kPixel_m : texel_m.at(x, y);
+            const auto rim_texels = static_cast<float>(visibility.filter_radius_texels() + 1.5);
+            const bool explained = below_m > (kEaves_m - rim_texels * texel) * tangent;
+            if (explained || below_m < kOwn_texels * texel) continue;
+            ++judged;
+            most = std::max(most, visibility.image().at(x, y));
+        }
+    }
+    return most;
+}
+
+TEST_P(Contact, AWallIsDarkUnderItsEaves) {
+    if (GetParam().label.ends_with("content_exponential")) {
+        GTEST_SKIP() << "exponential maps light what is near its caster";
+    }
+    std::size_t judged = 0;
+    EXPECT_LT(most_lit_under_eaves(GetParam(), judged), 0.25f);
+    EXPECT_GT(judged, 2000u);
 }
 
 class TooMuchBias : public test::DeviceTest {};

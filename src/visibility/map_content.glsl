@@ -19,6 +19,13 @@ float distance_of(MapSpace space, vec2 uv, float depth) {
     return space.reach > 0.0 ? min(along * along * (1.0 + dot(tangents, tangents)), 1.0) : along;
 }
 
+// The depth that was stored as this distance.
+float depth_of(MapSpace space, vec2 uv, float distance) {
+    vec2 tangents = (2.0 * uv - 1.0) * space.tangents.xy + space.tangents.zw;
+    float along = sqrt(max(distance, 0.0) / (1.0 + dot(tangents, tangents)));
+    return space.reach > 0.0 ? space.reach / max(along, space.reach) : 1.0 - distance;
+}
+
 // Four bytes, the first of the most weight.
 vec4 packed_in_four(float value) {
     vec4 scaled = fract(value * vec4(1.0, 256.0, 65536.0, 16777216.0) * (1.0 - 1.0 / 16777216.0));

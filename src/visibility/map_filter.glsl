@@ -21,6 +21,7 @@ struct MapPoint {
     vec2 gradient;   // of the receiver's plane, depth per texel
     float cone;      // depth that texels may be nearer to the light, for each texel that they are away
     float fall;      // depth that the plane is followed away from the light, and no farther
+    float end;       // the depth that it is followed to towards the light
     float layer;
     MapSpace space;  // of its layer
 };
@@ -30,7 +31,7 @@ struct MapPoint {
 vec4 plane_depths(MapPoint point, vec4 dx, vec4 dy) {
     vec4 planes = point.depth + point.gradient.x * dx + point.gradient.y * dy;
     if (kFilter >= kFilterDisc) planes += point.cone * sqrt(dx * dx + dy * dy);  // else it is 0
-    return clamp(planes, max(point.depth - point.fall, 0.0), kNearest);
+    return clamp(planes, max(point.depth - point.fall, 0.0), point.end);
 }
 
 float stored_distance(sampler2DArray map, float size, vec2 texel, float layer) {
@@ -46,23 +47,54 @@ float compared_distance(MapPoint point, MapBias bias, float size, vec2 texel, fl
     return distance * bias.distance_scale - bias.distance_offset - quantum(kContent);
 }
 
-// Which texels of the square with the corner (i, j) are lit: (i, j+1), (i+1, j+1), (i+1, j), (i, j), the
-// order of a gather.
-vec4 lit_quad(sampler2DArray map, float size, MapBias bias, MapPoint point, vec2 corner) {
+// Where the nearest texel is that the receiver's plane falls away to: its own surface is no nearer to the
+// light there than itself.
+vec2 fallen_texel(MapPoint point) {
+    return floor(point.texel - 0.5) + vec2(lessThan(point.gradient, vec2(0.0)));
+}
+
+// The point, its plane followed no farther towards the light than halfway to what hides the texel that it
+// falls away to. A wall ends below the eaves that hide it, but its plane goes on through the roof, and would
+// be lit above.
+MapPoint ended(MapPoint point, float size, float stored) {
+    float depth = stored;
+    if (kContent != kContentDepth) {
+        depth = depth_of(point.space, (fallen_texel(point) + 0.5) / size, stored);
+    }
+    bool hidden = depth - point.depth > point.fall;
+    point.end = min(hidden ? 0.5 * (point.depth + depth) : kNearest, kNearest);
+    return point;
+}
+
+// What is stored in the square with the corner (i, j): in (i, j+1), (i+1, j+1), (i+1, j), (i, j), the order
+// of a gather.
+vec4 stored_quad(sampler2DArray map, float size, MapPoint point, vec2 corner) {
+    if (kContent == kContentDepth) {
+        return textureGather(map, vec3((corner + 1.0) / size, point.layer));
+    }
+    return vec4(stored_distance(map, size, corner + vec2(0.0, 1.0), point.layer),
+                stored_distance(map, size, corner + vec2(1.0, 1.0), point.layer),
+                stored_distance(map, size, corner + vec2(1.0, 0.0), point.layer),
+                stored_distance(map, size, corner, point.layer));
+}
+
+// Of a square's four texels, the one in the column and row that are chosen.
+float chosen(vec4 quad, bvec2 second) {
+    vec2 row = second.y ? quad.xy : quad.wz;
+    return second.x ? row.y : row.x;
+}
+
+// Which of them are lit.
+vec4 lit_quad(vec4 stored, float size, MapBias bias, MapPoint point, vec2 corner) {
     vec2 d = corner + 0.5 - point.texel;
     vec4 planes = plane_depths(point, d.x + vec4(0.0, 1.0, 1.0, 0.0), d.y + vec4(1.0, 1.0, 0.0, 0.0));
-    if (kContent == kContentDepth) {
-        return vec4(greaterThanEqual(planes, textureGather(map, vec3((corner + 1.0) / size, point.layer))));
-    }
-    vec2 at[4] = {corner + vec2(0.0, 1.0), corner + vec2(1.0, 1.0), corner + vec2(1.0, 0.0), corner};
-    vec4 lit;
-    for (int i = 0; i < 4; ++i) {
-        lit[i] = compared_distance(point, bias, size, at[i], planes[i]) <=
-                         stored_distance(map, size, at[i], point.layer)
-                     ? 1.0
-                     : 0.0;
-    }
-    return lit;
+    if (kContent == kContentDepth) return vec4(greaterThanEqual(planes, stored));
+    vec4 distances = vec4(
+        compared_distance(point, bias, size, corner + vec2(0.0, 1.0), planes.x),
+        compared_distance(point, bias, size, corner + vec2(1.0, 1.0), planes.y),
+        compared_distance(point, bias, size, corner + vec2(1.0, 0.0), planes.z),
+        compared_distance(point, bias, size, corner, planes.w));
+    return vec4(lessThanEqual(distances, stored));
 }
 
 float lit_nearest(sampler2DArray map, float size, MapBias bias, MapPoint point) {
@@ -78,21 +110,37 @@ float lit_nearest(sampler2DArray map, float size, MapBias bias, MapPoint point) 
                : 0.0;
 }
 
+float mixed(vec4 quad, vec2 f) { return mix(mix(quad.w, quad.z, f.x), mix(quad.x, quad.y, f.x), f.y); }
+
 float lit_bilinear(sampler2DArray map, float size, MapBias bias, MapPoint point, vec2 at) {
     vec2 corner = floor(at - 0.5);
-    vec2 f = at - 0.5 - corner;
-    vec4 lit = lit_quad(map, size, bias, point, corner);
-    return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
+    vec4 stored = stored_quad(map, size, point, corner);
+    return mixed(lit_quad(stored, size, bias, point, corner), at - 0.5 - corner);
+}
+
+float lit_hardware_2x2(sampler2DArray map, float size, MapBias bias, MapPoint point) {
+    vec2 corner = floor(point.texel - 0.5);
+    vec4 stored = stored_quad(map, size, point, corner);
+    point = ended(point, size, chosen(stored, lessThan(point.gradient, vec2(0.0))));
+    return mixed(lit_quad(stored, size, bias, point, corner), point.texel - 0.5 - corner);
 }
 
 // Four bilinear comparisons side by side, which are the 3x3 nearest ones with weights 1-f, 1, f.
 float lit_box_3x3(sampler2DArray map, float size, MapBias bias, MapPoint point) {
     vec2 corner = floor(point.texel) - 1.0;
     vec2 f = point.texel - corner - 1.0;
-    vec4 a = lit_quad(map, size, bias, point, corner);
-    vec4 b = lit_quad(map, size, bias, point, corner + vec2(2.0, 0.0));
-    vec4 c = lit_quad(map, size, bias, point, corner + vec2(0.0, 2.0));
-    vec4 d = lit_quad(map, size, bias, point, corner + 2.0);
+    vec4 a = stored_quad(map, size, point, corner);
+    vec4 b = stored_quad(map, size, point, corner + vec2(2.0, 0.0));
+    vec4 c = stored_quad(map, size, point, corner + vec2(0.0, 2.0));
+    vec4 d = stored_quad(map, size, point, corner + 2.0);
+    vec2 fallen = fallen_texel(point) - corner;
+    bvec2 last = greaterThan(fallen, vec2(1.5));
+    vec4 quad = last.y ? (last.x ? d : c) : (last.x ? b : a);
+    point = ended(point, size, chosen(quad, equal(fallen, vec2(1.0))));
+    a = lit_quad(a, size, bias, point, corner);
+    b = lit_quad(b, size, bias, point, corner + vec2(2.0, 0.0));
+    c = lit_quad(c, size, bias, point, corner + vec2(0.0, 2.0));
+    d = lit_quad(d, size, bias, point, corner + 2.0);
     vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
     float row0 = dot(wx, vec3(a.w, a.z, b.w));
     float row1 = dot(wx, vec3(a.x, a.y, b.x));
@@ -105,16 +153,31 @@ float lit_box_3x3(sampler2DArray map, float size, MapBias bias, MapPoint point) 
 float lit_box_4x4(sampler2DArray map, float size, MapBias bias, MapPoint point) {
     vec2 corner = floor(point.texel - 0.5) - 1.0;
     vec2 f = point.texel - corner - 1.5;
-    vec4 a = lit_quad(map, size, bias, point, corner);
-    vec4 b = lit_quad(map, size, bias, point, corner + vec2(2.0, 0.0));
-    vec4 c = lit_quad(map, size, bias, point, corner + vec2(0.0, 2.0));
-    vec4 d = lit_quad(map, size, bias, point, corner + 2.0);
+    vec4 a = stored_quad(map, size, point, corner);
+    vec4 b = stored_quad(map, size, point, corner + vec2(2.0, 0.0));
+    vec4 c = stored_quad(map, size, point, corner + vec2(0.0, 2.0));
+    vec4 d = stored_quad(map, size, point, corner + 2.0);
+    vec4 middle = vec4(c.z, d.w, b.x, a.y);
+    point = ended(point, size, chosen(middle, lessThan(point.gradient, vec2(0.0))));
+    a = lit_quad(a, size, bias, point, corner);
+    b = lit_quad(b, size, bias, point, corner + vec2(2.0, 0.0));
+    c = lit_quad(c, size, bias, point, corner + vec2(0.0, 2.0));
+    d = lit_quad(d, size, bias, point, corner + 2.0);
     vec4 wx = vec4(1.0 - f.x, 1.0, 1.0, f.x);
     float row0 = dot(wx, vec4(a.w, a.z, b.w, b.z));
     float row1 = dot(wx, vec4(a.x, a.y, b.x, b.y));
     float row2 = dot(wx, vec4(c.w, c.z, d.w, d.z));
     float row3 = dot(wx, vec4(c.x, c.y, d.x, d.y));
     return ((1.0 - f.y) * row0 + row1 + row2 + f.y * row3) / 9.0;
+}
+
+// The point, for filters whose taps are anywhere.
+MapPoint ended_by_fetch(sampler2DArray map, float size, MapPoint point) {
+    vec2 texel = clamp(fallen_texel(point), 0.0, size - 1.0);
+    if (kContent != kContentDepth) {
+        return ended(point, size, stored_distance(map, size, texel, point.layer));
+    }
+    return ended(point, size, texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x);
 }
 
 // Four of the sixteen taps, the others by turns in squares of four pixels, so that the eye averages them.

@@ -110,22 +110,33 @@ float pcss_search_m(MapPoint point, TexelAt texel, vec3 to_light) {
     float most_m = frame.reading.most_texels * texel.side_m;
     float depth_per_m = max(dot(texel.z, to_light), 1e-20);
     float search_m = push.light.radius * (1.0 - point.depth) / depth_per_m;
-    return kLightKind == kLightDirectional ? clamp(search_m, texel.side_m, most_m) : most_m;
+    return kLightKind == kLightDirectional ? min(search_m, most_m) : most_m;
+}
+
+// The map's ellipse of a disc of this radius, no narrower than a texel whichever way texels are long:
+// a matrix to it from the unit disc. As P. Heckbert, "Fundamentals of Texture Mapping and Image Warping",
+// 1989, adds the footprint of a texel to that of a pixel.
+mat2 at_least_a_texel(float radius_m, mat2 texels_per_m) {
+    mat2 spread = radius_m * texels_per_m;
+    mat2 squared = spread * transpose(spread) + mat2(1.0);
+    float along_u = sqrt(squared[0][0]);
+    float shear = squared[0][1] / along_u;
+    return mat2(along_u, shear, 0.0, sqrt(max(squared[1][1] - shear * shear, 1.0)));
 }
 
 // The light's own penumbra: as wide as the light looks from what hides it, in metres across the light.
 float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn, uint taps) {
     float most_m = frame.reading.most_texels * texel.side_m;
-    float least_m = texel.side_m;
     float depth_per_m = max(dot(texel.z, to_light), 1e-20);
     bool at_infinity = kLightKind == kLightDirectional;
     mat2 texels = texels_across_light(texel, to_light);
-    float blocker = blocker_depth(map, frame.size_texels, point,
-                                  pcss_search_m(point, texel, to_light) * texels, turn, taps);
+    mat2 search = at_least_a_texel(pcss_search_m(point, texel, to_light), texels);
+    float blocker = blocker_depth(map, frame.size_texels, point, search, turn, taps);
     float behind = at_infinity ? (blocker - point.depth) / depth_per_m
                                : blocker / max(point.depth, 1e-20) - 1.0;
-    float penumbra_m = clamp(push.light.radius * behind, least_m, most_m);
-    float lit = lit_disc(map, frame.size_texels, frame.bias, point, penumbra_m * texels, turn, taps);
+    float penumbra_m = clamp(push.light.radius * behind, 0.0, most_m);
+    float lit = lit_disc(map, frame.size_texels, frame.bias, point,
+                         at_least_a_texel(penumbra_m, texels), turn, taps);
     return blocker > 0.0 ? lit : 1.0;
 }
 
@@ -147,8 +158,8 @@ vec2 filter_reach(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint) 
         case kFilterFootprint:
             return 0.5 * (abs(footprint[0]) + abs(footprint[1])) + kBilinear;
         case kFilterPcss:
-            mat2 axes = transpose(pcss_search_m(point, texel, to_light) *
-                                  texels_across_light(texel, to_light));
+            mat2 axes = transpose(at_least_a_texel(pcss_search_m(point, texel, to_light),
+                                                   texels_across_light(texel, to_light)));
             return vec2(length(axes[0]), length(axes[1])) + kBilinear;
     }
     return vec2(2.0);
@@ -160,11 +171,12 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
     if (kContent >= kContentExponential) return lit_by_blurred(point);
     float size = frame.size_texels;
     uint taps = needed ? kTaps : 0u;
+    if (kFilter > kFilterBox4x4) point = ended_by_fetch(map, size, point);
     switch (kFilter) {
         case kFilterNearest:
             return lit_nearest(map, size, frame.bias, point);
         case kFilterHardware2x2:
-            return lit_bilinear(map, size, frame.bias, point, point.texel);
+            return lit_hardware_2x2(map, size, frame.bias, point);
         case kFilterBox3x3:
             return lit_box_3x3(map, size, frame.bias, point);
         case kFilterDithered4:
@@ -206,8 +218,8 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
     MapPoint point = MapPoint(frame.size_texels * uvz.xy, uvz.z,
                               frame.bias.receiver_plane * texel.gradient,
                               frame.bias.cone * length(texel.gradient),
-                              kMaxFall * texel.side_m * max(dot(texel.z, to_light), 0.0), layer.index,
-                              layer.map.space);
+                              kMaxFall * texel.side_m * max(dot(texel.z, to_light), 0.0), kNearest,
+                              layer.index, layer.map.space);
     float lit = known;
     if (kProof != kProofNone) {
         float proven = proven_lit(bounds, frame.size_texels, frame.bounded_texels, frame.bias,
