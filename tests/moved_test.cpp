@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Reusing{"omni", "omni", {}},
                     Reusing{"omni_distance", "omni", {{"content", "distance"}}},
                     Reusing{"shadow_map", "shadow_map", {}}, Reusing{"lispsm", "lispsm", {}},
-                    Reusing{"psm", "psm", {}}),
+                    Reusing{"tsm", "tsm", {}}, Reusing{"psm", "psm", {}}),
     [](const auto& test) { return test.param.label; });
 
 // The camera rests and jumps, so that no map scrolls and all pictures are alike to the bit.
