@@ -12,8 +12,8 @@
 // A surface at 84° to the light; steeper ones are moved as this one.
 const float kMaxSlope = 10.0;
 
-// A plane at 89°: steeper ones are extended as this one, since normals of 16 bits would tell too little.
-const float kMaxGradientSlope = 50.0;
+// A plane at 89.4°: steeper ones are extended as this one, since normals of 16 bits would tell too little.
+const float kMaxGradientSlope = 100.0;
 
 // Texels' sides that a receiver's plane is followed away from the light: as far as filters of up to four
 // texels follow planes at 45°.
