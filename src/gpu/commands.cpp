@@ -292,6 +292,14 @@ void Commands::clear(Image& image, const VkClearColorValue& value) {
                          &all);
 }
 
+void Commands::clear_depth(Image& image, unsigned layer) {
+    use(image, Use::copy_target);
+    const VkClearDepthStencilValue far{};
+    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, layer, 1};
+    vkCmdClearDepthStencilImage(handle_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &far,
+                                1, &range);
+}
+
 void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t bytes) {
     const VkBufferCopy region{0, 0, bytes};
     vkCmdCopyBuffer(handle_, source.handle(), target.handle(), 1, &region);

@@ -128,6 +128,8 @@ public:
 
     /// All of a colour image; it is in use as the target of copies afterwards.
     void clear(Image& image, const VkClearColorValue& value);
+    /// A layer of a depth image without stencil, to 0, likewise.
+    void clear_depth(Image& image, unsigned layer);
 
     void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes);
     void copy(const Buffer& source, const Image& target);

@@ -1,5 +1,7 @@
 #include "visibility/caster_draws.h"
 
+#include "visibility/moving_casters.h"
+
 #include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/geometric.hpp>
@@ -62,6 +64,7 @@ Culled culled_by(const MapLayer& layer, scene::Winding winding) {
 void CasterDraws::clear() {
     instances_.clear();
     triangles_ = 0;
+    boxed_texels_ = 0;
 }
 
 std::vector<CasterDraw> CasterDraws::add(const raster::GpuScene& scene, const MapLayer& layer,
@@ -77,6 +80,7 @@ std::vector<CasterDraw> CasterDraws::add(const raster::GpuScene& scene, const Ma
             if (!wanted.empty() && wanted[placed] == 0) continue;
             const Box3& bounds_ws = scene.part_bounds_ws()[i];
             if (!layer.casters.holds(bounds_ws)) continue;
+            boxed_texels_ += covered_texels(layer.fit, Mat4(1.0f), bounds_ws).area();
             const Instance& instance = scene.scene().instances()[placed];
             const raster::CasterLevel& level =
                 level_for(layer, scene.levels(draw, part), part, bounds_ws);

@@ -55,6 +55,8 @@ public:
 
     const std::vector<CasterInstance>& instances() const { return instances_; }
     std::uint64_t triangles() const { return triangles_; }  ///< over all layers
+    /// In boxes around the casters, over all layers; texels in several count several times.
+    std::uint64_t boxed_texels() const { return boxed_texels_; }
 
 private:
     void add_part(std::vector<CasterDraw>& draws, const CasterDraw& part,
@@ -62,6 +64,7 @@ private:
 
     std::vector<CasterInstance> instances_;
     std::uint64_t triangles_ = 0;
+    std::uint64_t boxed_texels_ = 0;
 };
 
 /// Puts what one state of the pipeline draws side by side: what needs no texture, by what is

@@ -28,6 +28,10 @@ constexpr std::size_t kMostStrips = 2;
 /// Share of a layer: where less stays, copying it saves little.
 constexpr double kLeastKept = 0.5;
 
+/// Share of a layer: where boxes around casters hold less, a software device clears it faster in
+/// rows, by itself, than in tiles as it draws. Other devices clear as they draw.
+constexpr double kSparse = 0.5;
+
 gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamps_near,
                               bool layered) {
     gpu::GraphicsPipelineInfo info;
@@ -82,6 +86,10 @@ VkRect2D area_of(const TexelRect& texels) {
     return {{texels.x, texels.y}, {texels.width, texels.height}};
 }
 
+bool clears_in_rows(const gpu::Device& device) {
+    return device.info().type == DeviceType::cpu;
+}
+
 /// Whether all that is drawn can be drawn in one pass.
 bool agree(std::span<const MapLayer> layers) {
     return std::ranges::all_of(layers, [&](const MapLayer& layer) {
@@ -121,8 +129,9 @@ void DepthMap::keep_what_holds(const raster::GpuScene& scene, const CasterOption
 
 void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {
     const Extent size{size_texels, size_texels};
-    const VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                    VK_IMAGE_USAGE_SAMPLED_BIT | (reuse ? kCopied : 0);
+    VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                              VK_IMAGE_USAGE_SAMPLED_BIT | (reuse ? kCopied : 0);
+    if (clears_in_rows(device_)) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     if (image_ && image_.size() == size && image_.info().layers == layers &&
         image_.info().usage == usage) {
         return;
@@ -191,6 +200,7 @@ void DepthMap::plan(const raster::GpuScene& scene, std::span<const MapLayer> lay
 void DepthMap::join_passes() {
     Pass& all = passes_.front();
     all.layer = -1;
+    all.is_cleared = false;
     for (const Pass& pass : std::span(passes_).subspan(1))
         all.draws.insert(all.draws.end(), pass.draws.begin(), pass.draws.end());
     passes_.resize(1);
@@ -211,9 +221,14 @@ std::optional<MapScroll> DepthMap::what_stays(const MapLayer& layer, unsigned in
 void DepthMap::place_casters(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
                              const TexelRect& texels) {
     MapLayer part = layer;
-    if (texels != whole_map(layer.fit.size_texels)) part.casters.keep_within(layer.fit, texels);
+    const bool is_whole = texels == whole_map(layer.fit.size_texels);
+    if (!is_whole) part.casters.keep_within(layer.fit, texels);
+    const std::uint64_t boxed_before = casters_.boxed_texels();
     passes_.push_back({static_cast<int>(index), layer.fit.clamps_near, texels,
                        casters_.add(scene, part, index, moving_.still())});
+    const auto boxed = static_cast<double>(casters_.boxed_texels() - boxed_before);
+    passes_.back().is_cleared =
+        is_whole && clears_in_rows(device_) && boxed < kSparse * static_cast<double>(texels.area());
     texels_ += texels.area();
 }
 
@@ -276,17 +291,25 @@ DepthMap::Pipelines& DepthMap::pipelines(bool clamps_near, bool layered) {
     return *made;
 }
 
+void DepthMap::clear_sparse(gpu::Commands& commands) {
+    for (const Pass& pass : passes_) {
+        if (pass.is_cleared) commands.clear_depth(kept(), static_cast<unsigned>(pass.layer));
+    }
+}
+
 void DepthMap::draw_passes(gpu::Commands& commands, const raster::GpuScene& scene,
                            const CasterOptions& options) {
     if (passes_.empty()) return;
     gpu::Image& map = kept();
+    clear_sparse(commands);
     commands.use(map, gpu::Use::depth_target);
     std::uint64_t first_command = 0;
     for (const Pass& pass : passes_) {
         commands.begin_drawing({.depth = &map,
                                 .depth_layer = pass.layer,
                                 .size = map.size(),
-                                .area = area_of(pass.texels)});
+                                .area = area_of(pass.texels),
+                                .clear_depth = !pass.is_cleared});
         draw(commands, scene, pipelines(pass.clamps_near, pass.layer < 0), pass.draws,
              first_command, options);
         commands.end_drawing();

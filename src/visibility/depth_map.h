@@ -60,6 +60,7 @@ private:
         bool clamps_near = true;
         TexelRect texels;
         std::vector<CasterDraw> draws;
+        bool is_cleared = false;  ///< before drawing begins
     };
     /// Texels of a layer that are copied, and what moves and is drawn over them.
     struct Patch {
@@ -99,6 +100,7 @@ private:
     void join_passes();
     void move(gpu::Commands& commands);
     void upload(gpu::Commands& commands);
+    void clear_sparse(gpu::Commands& commands);
     void draw_passes(gpu::Commands& commands, const raster::GpuScene& scene,
                      const CasterOptions& options);
     void draw_patches(gpu::Commands& commands, const raster::GpuScene& scene,

@@ -86,6 +86,22 @@ TEST_F(ScrolledDepthMapTest, HoldsWhatDrawingAllOfItWould) {
     }
 }
 
+// Where casters cover little, software devices clear in another way.
+TEST_F(ScrolledDepthMapTest, HoldsNothingOfAnEarlierFrame) {
+    const Scene scene = make_builtin_scene("field-small");
+    const auto light = std::get<DirectionalLight>(scene.lights().at(0));
+    const MapLayer all = layer_of(scene, scene.cameras().at(0), light);
+    MapLayer none = all;
+    none.caster_error_texels = 0.01f;                        // so that it is drawn anew
+    none.casters.keep_before(ReceiverMask(all.fit, {}, 0));  // and without any
+    DepthMap map(device());
+    record(map, scene, all, {.reuse = true});
+    EXPECT_GT(std::ranges::max(depths(map)), 0.0f);
+    record(map, scene, none, {.reuse = true});
+    EXPECT_EQ(map.triangles(), 0u);
+    EXPECT_EQ(std::ranges::max(depths(map)), 0.0f);
+}
+
 TEST_F(ScrolledDepthMapTest, DrawsLittleWhenTheCameraMovesALittle) {
     const Scene scene = make_builtin_scene("courtyard");
     const auto light = std::get<DirectionalLight>(scene.lights().at(0));
