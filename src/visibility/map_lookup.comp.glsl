@@ -30,7 +30,7 @@ layout(set = 0, binding = 3) uniform sampler2DArray map;
 layout(set = 0, binding = 4, scalar) uniform Frame { MapFrame frame; };
 layout(set = 0, binding = 5) uniform sampler2DArray bounds;
 layout(set = 0, binding = 6, scalar) readonly buffer Blocks { uint blocks[]; };
-layout(push_constant, scalar) uniform Push { ReceiverPush push; };
+layout(push_constant, scalar) uniform Push { MapLookupPush push; };
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
 const float kLeastDepth = 1e-12;
@@ -46,10 +46,10 @@ struct Layer {
 // The last layer that begins before the receiver, or the one along whose axis it is farthest. All are read
 // and one is chosen, number by number: an index that differs between pixels would be followed pixel by pixel.
 Layer layer_of(float depth, vec3 p_es, float noise) {
-    Layer layer = Layer(frame.layers[0], 0.0);
+    Layer layer = Layer(frame.layers[push.first_layer], float(push.first_layer));
     float blended_depth = depth * (1.0 - frame.blend * noise);  // as if up to so much farther away
     for (uint i = 1u; i < kLayerCount; ++i) {
-        MapLayerFrame next = frame.layers[i];
+        MapLayerFrame next = frame.layers[push.first_layer + i];
         bool chosen = kLayerChoice == kChooseByDistance
                           ? blended_depth < next.first_depth
                           : dot(next.w, vec4(p_es, 1.0)) > dot(layer.map.w, vec4(p_es, 1.0));
@@ -60,7 +60,7 @@ Layer layer_of(float depth, vec3 p_es, float noise) {
         layer.map.steps = mix(layer.map.steps, next.steps, bvec3(chosen));
         layer.map.space.tangents = mix(layer.map.space.tangents, next.space.tangents, bvec4(chosen));
         layer.map.space.reach = chosen ? next.space.reach : layer.map.space.reach;
-        layer.index = chosen ? float(i) : layer.index;
+        layer.index = chosen ? float(push.first_layer + i) : layer.index;
     }
     return layer;
 }
@@ -109,7 +109,7 @@ mat2 texels_across_light(TexelAt texel, vec3 to_light) {
 float pcss_search_m(MapPoint point, TexelAt texel, vec3 to_light) {
     float most_m = frame.reading.most_texels * texel.side_m;
     float depth_per_m = max(dot(texel.z, to_light), 1e-20);
-    float search_m = push.light.radius * (1.0 - point.depth) / depth_per_m;
+    float search_m = frame.receivers.light.radius * (1.0 - point.depth) / depth_per_m;
     return kLightKind == kLightDirectional ? min(search_m, most_m) : most_m;
 }
 
@@ -134,7 +134,7 @@ float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn, uint ta
     float blocker = blocker_depth(map, frame.size_texels, point, search, turn, taps);
     float behind = at_infinity ? (blocker - point.depth) / depth_per_m
                                : blocker / max(point.depth, 1e-20) - 1.0;
-    float penumbra_m = clamp(push.light.radius * behind, 0.0, most_m);
+    float penumbra_m = clamp(frame.receivers.light.radius * behind, 0.0, most_m);
     float lit = lit_disc(map, frame.size_texels, frame.bias, point,
                          at_least_a_texel(penumbra_m, texels), turn, taps);
     return blocker > 0.0 ? lit : 1.0;
@@ -197,8 +197,8 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
 // From a pixel to the next on the receiver's plane, in texels.
 vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float depth) {
     // Two points of the next pixel's ray.
-    vec3 far = receiver_position(push.es_from_clip, next, push.size, depth);
-    vec3 near = receiver_position(push.es_from_clip, next, push.size, 1.5 * depth);
+    vec3 far = receiver_position(frame.receivers.es_from_clip, next, frame.receivers.size, depth);
+    vec3 near = receiver_position(frame.receivers.es_from_clip, next, frame.receivers.size, 1.5 * depth);
     vec3 along = far - near;
     float slope = dot(normal_ws, along);
     float least = 1e-3 * length(along);
@@ -245,7 +245,8 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
 
 uvec2 pixel_looked_at() {
     if (kListed == 0u) return gl_GlobalInvocationID.xy;
-    uint block = blocks[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint block = blocks[push.first_block + group];
     return kSurveyBlock_px * uvec2(block & 0xffffu, block >> 16) + gl_LocalInvocationID.xy;
 }
 
@@ -253,11 +254,11 @@ uvec2 pixel_looked_at() {
 // slowly within.
 void main() {
     uvec2 pixel = pixel_looked_at();
-    ivec2 at = ivec2(min(pixel, push.size - 1u));
+    ivec2 at = ivec2(min(pixel, frame.receivers.size - 1u));
     float depth = texelFetch(depths, at, 0).x;
-    vec3 p_es = receiver_position(push.es_from_clip, pixel, push.size, max(depth, kLeastDepth));
+    vec3 p_es = receiver_position(frame.receivers.es_from_clip, pixel, frame.receivers.size, max(depth, kLeastDepth));
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
-    vec3 to_light = to_light_ws(push.light, p_es);
+    vec3 to_light = to_light_ws(frame.receivers.light, p_es);
     if (kLightKind != kLightDirectional) to_light = normalize(to_light);  // which is that already
     Layer layer = layer_of(depth, p_es, gradient_noise(pixel));
     TexelAt texel = kAffine != 0u
@@ -270,11 +271,11 @@ void main() {
         footprint = mat2(step_on_plane(texel, p_es, normal_ws, pixel + uvec2(1u, 0u), near_depth),
                          step_on_plane(texel, p_es, normal_ws, pixel + uvec2(0u, 1u), near_depth));
     }
-    bool faces = faces_light(push.light, p_es, normal_ws);
+    bool faces = faces_light(frame.receivers.light, p_es, normal_ws);
     float known = depth > 0.0 ? (faces ? kNotProven : kProvenDark) : kProvenLit;
     float lit = lit_by_map(biased_es, texel, layer, to_light, footprint, pixel, known);
     lit = faces ? lit : 0.0;
-    if (all(lessThan(pixel, push.size))) {
+    if (all(lessThan(pixel, frame.receivers.size))) {
         imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));
     }
 }

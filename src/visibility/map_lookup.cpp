@@ -38,7 +38,7 @@ gpu::ComputePipelineInfo lookup_info(std::vector<std::uint32_t> constants) {
     return {.code = shaders::map_lookup_comp,
             .layout = {{texture, storage_image, storage_image, texture, uniform_buffer, texture,
                         storage_buffer},
-                       sizeof(shared::ReceiverPush)},
+                       sizeof(shared::MapLookupPush)},
             .constants = std::move(constants)};
 }
 
@@ -65,6 +65,15 @@ shared::MapLayerFrame layer_frame(const LightFit& fit, Vec3 eye_ws) {
                        std::max(u_m, v_m)};
     }
     return layer;
+}
+
+/// Which layer the shader chooses by a depth of the picture.
+std::size_t layer_at(std::span<const shared::MapLayerFrame> layers, float depth) {
+    std::size_t chosen = 0;
+    for (std::size_t i = 1; i < layers.size(); ++i) {
+        if (depth < layers[i].first_depth) chosen = i;
+    }
+    return chosen;
 }
 
 /// Taps at any distance are free of acne on a plane when what it gains over that is made up for.
@@ -165,13 +174,14 @@ MapLookup::MapLookup(const gpu::Device& device, const ReadingOptions& reading,
              gpu::Placement::device),
       blocks_(block_buffer(device, sizeof(std::uint32_t))) {}
 
-LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::uint32_t proof, bool listed) {
+LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::size_t layer_count,
+                                    std::uint32_t proof, bool listed) {
     const bool affine = std::ranges::all_of(
         layers.layers, [](const LookupLayer& layer) { return layer.fit.affine; });
     const std::vector<std::uint32_t> constants{static_cast<std::uint32_t>(reading_.filter),
                                                static_cast<std::uint32_t>(reading_.content),
                                                static_cast<std::uint32_t>(reading_.filter_taps),
-                                               static_cast<std::uint32_t>(layers.layers.size()),
+                                               static_cast<std::uint32_t>(layer_count),
                                                affine ? 1u : 0u,
                                                static_cast<std::uint32_t>(layers.choice),
                                                proof,
@@ -181,20 +191,39 @@ LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::uint32_t pr
     return pipeline;
 }
 
-// As many groups as there are blocks, and a few more to fill their rectangle, which do the last one
+// Most blocks lie in one layer, which need then not be chosen pixel by pixel; the others are looked
+// up in all of them. Groups fill rectangles: a few more than there are blocks do the last one
 // again.
-Extent MapLookup::list(gpu::Commands& commands, const ReceiverSurvey& survey) {
+std::vector<MapLookup::Part> MapLookup::list(gpu::Commands& commands, const ReceiverSurvey& survey,
+                                             const shared::MapFrame& frame,
+                                             std::size_t layer_count) {
     constexpr unsigned kMostInRow = 4096;  // devices take 65535
-    std::vector<std::uint32_t> blocks = survey.blocks();
-    if (blocks.empty()) return {};
-    const auto count = static_cast<unsigned>(blocks.size());
-    const unsigned width = std::min(count, kMostInRow);
-    const Extent groups{width, (count + width - 1) / width};
-    blocks.resize(std::size_t{groups.width} * groups.height, blocks.back());
+    const std::span all(frame.layers, layer_count);
+    std::vector<std::vector<std::uint32_t>> places(layer_count + 1);  // the last: of several
+    for (const SeenBlock& block : survey.blocks()) {
+        const std::size_t nearest = layer_at(all, block.nearest_depth);
+        const bool is_one = nearest == layer_at(all, block.farthest_depth * (1.0f - frame.blend));
+        places[is_one ? nearest : layer_count].push_back(block.place);
+    }
+    std::vector<std::uint32_t> blocks;
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (places[i].empty()) continue;
+        const auto count = static_cast<unsigned>(places[i].size());
+        const unsigned width = std::min(count, kMostInRow);
+        const Extent groups{width, (count + width - 1) / width};
+        const bool is_one = i < layer_count;
+        parts.push_back({is_one ? static_cast<unsigned>(i) : 0, is_one ? 1 : layer_count,
+                         static_cast<unsigned>(blocks.size()), groups});
+        blocks.insert(blocks.end(), places[i].begin(), places[i].end());
+        blocks.resize(blocks.size() + std::size_t{groups.width} * groups.height - count,
+                      blocks.back());
+    }
+    if (blocks.empty()) return parts;
     const std::span<const std::byte> bytes = std::as_bytes(std::span<const std::uint32_t>(blocks));
     if (blocks_.size_bytes() < bytes.size()) blocks_ = block_buffer(device_, bytes.size());
     commands.update(blocks_, bytes);
-    return groups;
+    return parts;
 }
 
 void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receivers,
@@ -210,6 +239,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
                      .exponent = static_cast<float>(reading_.exponent),
                      .least_variance = kLeastDeviation * kLeastDeviation,
                      .bleeding = static_cast<float>(reading_.light_bleeding)};
+    frame.receivers = receiver_push(receivers, light);
     frame.size_texels = static_cast<float>(layers.front().fit.size_texels);
     frame.bounded_texels = bounds == nullptr ? Vec3(0) : bounds->reach_texels();
     frame.blend = static_cast<float>(lookup_layers.blend);
@@ -220,23 +250,27 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     }
     commands.update(frame_, frame);
     if (survey != nullptr) commands.clear(visibility, {.float32 = {1.0f, 0.0f, 0.0f, 0.0f}});
-    const Extent groups = survey != nullptr ? list(commands, *survey) : Extent{};
+    const Extent whole{(receivers.size.width + kGroupSize - 1) / kGroupSize,
+                       (receivers.size.height + kGroupSize - 1) / kGroupSize};
+    const std::vector<Part> parts = survey != nullptr
+                                        ? list(commands, *survey, frame, layers.size())
+                                        : std::vector<Part>{{0, layers.size(), 0, whole}};
     commands.use(visibility, gpu::Use::storage_write);
     const std::uint32_t proof = bounds == nullptr ? shared::kProofNone
                                 : shows_proven_   ? shared::kProofShown
                                                   : shared::kProofSkips;
-    const gpu::Pipeline& lookup = pipeline(lookup_layers, proof, survey != nullptr).of(light);
-    commands.bind(
-        lookup, {gpu::Texture{receivers.depth.view(), &nearest_},
-                 gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},
-                 gpu::Texture{map.view(), &nearest_}, gpu::UniformBuffer{&frame_},
-                 gpu::Texture{(bounds == nullptr ? map : bounds->image()).view(), &nearest_},
-                 gpu::StorageBuffer{&blocks_}});
-    commands.push(lookup, receiver_push(receivers, light));
-    if (survey != nullptr) {
-        commands.dispatch(groups, 1);
-    } else {
-        commands.dispatch(receivers.size, kGroupSize);
+    for (const Part& part : parts) {
+        const gpu::Pipeline& lookup =
+            pipeline(lookup_layers, part.layer_count, proof, survey != nullptr).of(light);
+        commands.bind(
+            lookup,
+            {gpu::Texture{receivers.depth.view(), &nearest_},
+             gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},
+             gpu::Texture{map.view(), &nearest_}, gpu::UniformBuffer{&frame_},
+             gpu::Texture{(bounds == nullptr ? map : bounds->image()).view(), &nearest_},
+             gpu::StorageBuffer{&blocks_}});
+        commands.push(lookup, shared::MapLookupPush{part.first_layer, part.first_block});
+        commands.dispatch(part.groups, 1);
     }
 }
 

@@ -104,8 +104,18 @@ public:
     std::uint64_t memory_bytes() const { return frame_.memory_bytes() + blocks_.memory_bytes(); }
 
 private:
-    LookupPipeline& pipeline(const LookupLayers& layers, std::uint32_t proof, bool listed);
-    Extent list(gpu::Commands& commands, const ReceiverSurvey& survey);
+    /// Groups of pixels that are looked up in the same layers.
+    struct Part {
+        unsigned first_layer = 0;
+        std::size_t layer_count = 1;
+        unsigned first_block = 0;
+        Extent groups;
+    };
+
+    LookupPipeline& pipeline(const LookupLayers& layers, std::size_t layer_count,
+                             std::uint32_t proof, bool listed);
+    std::vector<Part> list(gpu::Commands& commands, const ReceiverSurvey& survey,
+                           const shared::MapFrame& frame, std::size_t layer_count);
 
     const gpu::Device& device_;
     ReadingOptions reading_;

@@ -82,6 +82,7 @@ struct MapLayerFrame {
 };
 
 struct MapFrame {
+    ReceiverPush receivers;
     MapLayerFrame layers[kMaxMapLayers];
     MapBias bias;
     MapReadingFrame reading;
@@ -90,6 +91,12 @@ struct MapFrame {
     // How far around a receiver the map's bounds hold, in texels: the narrowest, the next, which
     // are without end where none are wider; and the widest.
     vec3 bounded_texels;
+};
+
+/// What differs between the dispatches of a frame.
+struct MapLookupPush {
+    uint first_layer;  // of those that are chosen among
+    uint first_block;  // of the listed ones
 };
 
 struct MapContentPush {

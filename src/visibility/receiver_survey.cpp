@@ -139,8 +139,10 @@ Seen ReceiverSurvey::seen() {
     std::memcpy(found.data(), blocks_.mapped(), blocks_.size_bytes());
     with_receivers_.clear();
     for (std::uint32_t i = 0; i < found.size(); ++i) {
-        if (found[i].nearest > 0.0f)
-            with_receivers_.push_back(i % blocks.width | i / blocks.width << 16);
+        if (found[i].nearest > 0.0f) {
+            with_receivers_.push_back(
+                {i % blocks.width | i / blocks.width << 16, found[i].nearest, found[i].farthest});
+        }
     }
     const Picture picture(camera_, size_);
     std::vector<SeenTile> tiles;

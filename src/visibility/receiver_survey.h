@@ -9,6 +9,12 @@
 
 namespace gnomon {
 
+/// Pixels of a block of kSurveyBlock_px that have receivers.
+struct SeenBlock {
+    std::uint32_t place;                  ///< x in the lower 16 bits, y in the upper
+    float nearest_depth, farthest_depth;  ///< of the picture, reversed
+};
+
 /// Finds where a picture's receivers are, from its depths: A. Lauritzen, M. Salvi, A. Lefohn,
 /// "Sample Distribution Shadow Maps", I3D 2011. Departures: bounds are kept tile by tile, and in
 /// each depth by depth, as T. Harada, "A 2.5D Culling for Forward+", SIGGRAPH Asia 2012 technical
@@ -21,9 +27,8 @@ public:
     void record(gpu::Commands& commands, const raster::Receivers& receivers);
     /// When the device has finished.
     Seen seen();
-    /// After seen(): the blocks of kSurveyBlock_px that have receivers, x in the lower 16 bits and
-    /// y in the upper.
-    const std::vector<std::uint32_t>& blocks() const { return with_receivers_; }
+    /// After seen(): the blocks that have receivers.
+    const std::vector<SeenBlock>& blocks() const { return with_receivers_; }
 
     std::uint64_t memory_bytes() const { return blocks_.memory_bytes(); }
 
@@ -32,7 +37,7 @@ private:
     gpu::Pipeline pipeline_;
     gpu::Sampler nearest_;
     gpu::Buffer blocks_;
-    std::vector<std::uint32_t> with_receivers_;
+    std::vector<SeenBlock> with_receivers_;
     Camera camera_;
     Extent size_;
 };
