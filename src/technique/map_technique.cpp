@@ -28,8 +28,7 @@ CasterVolume drawn_casters(const MapOptions& options, const PlannedLayer& layer)
 MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options)
     : GpuTechnique(context, info),
       options_(options),
-      map_(context.impl().device()),
-      bounds_(context.impl().device(), options),
+      maps_(std::make_unique<Maps>(context.impl().device(), options)),
       lookup_(context.impl().device(), options, bias(options)) {
     if (options.filter == MapFilter::pcss && options.content != MapContent::depth &&
         !is_blurred(options.content)) {
@@ -38,10 +37,18 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
     }
     if (options.fit_to == FitTo::picture)
         survey_ = std::make_unique<ReceiverSurvey>(context.impl().device());
+}
+
+MapTechnique::Maps::Maps(const gpu::Device& device, const MapOptions& options)
+    : map(device), bounds(device, options) {
     if (options.content == MapContent::depth) return;
-    contents_ = std::make_unique<ContentMap>(context.impl().device(), options.content,
-                                             static_cast<float>(options.exponent),
-                                             static_cast<float>(options.blur));
+    contents =
+        std::make_unique<ContentMap>(device, options.content, static_cast<float>(options.exponent),
+                                     static_cast<float>(options.blur));
+}
+
+std::uint64_t MapTechnique::Maps::memory_bytes() const {
+    return map.memory_bytes() + (contents ? contents->memory_bytes() : 0) + bounds.memory_bytes();
 }
 
 PlannedLayer MapTechnique::directional_layer(const Frame& frame, const Seen& seen,
@@ -90,6 +97,7 @@ bool MapTechnique::survey(gpu::Commands& commands, const RecordInput& input) {
 
 void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                           gpu::Image& visibility) {
+    auto& [map, contents, bounds] = *maps_;
     std::vector<MapLayer> drawn;
     std::vector<LightFit> fits;
     bool is_drawn = false;
@@ -107,28 +115,27 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     }
     {
         const gpu::Pass pass(commands, "depth");
-        is_drawn = map_.record(commands, input.scene, drawn,
-                               {.ignore_alpha = input.frame.ignore_alpha,
-                                .reuse = options_.reuse_maps,
-                                .multi_draw = options_.multi_draw,
-                                .layered = options_.layered});
+        is_drawn = map.record(commands, input.scene, drawn,
+                              {.ignore_alpha = input.frame.ignore_alpha,
+                               .reuse = options_.reuse_maps,
+                               .multi_draw = options_.multi_draw,
+                               .layered = options_.layered});
     }
     for (std::size_t i = 0; i < fits.size(); ++i)
-        fits[i] = map_.drawn_fit(i, fits[i]);
-    if (contents_ && (is_drawn || !contents_->measures_as(fits))) {
+        fits[i] = map.drawn_fit(i, fits[i]);
+    if (contents && (is_drawn || !contents->measures_as(fits))) {
         const gpu::Pass pass(commands, "content");
-        contents_->record(commands, map_.image(), fits);
+        contents->record(commands, map.image(), fits);
     }
-    if (is_drawn) bounds_.outdate();
-    const bool is_bounded =
-        bounds_.pay(options_.skip_uniform, input.frame.size, map_.image(), fits);
+    if (is_drawn) bounds.outdate();
+    const bool is_bounded = bounds.pay(options_.skip_uniform, input.frame.size, map.image(), fits);
     if (is_bounded) {
         const gpu::Pass pass(commands, "bounds");
-        bounds_.record(commands, map_.image());
+        bounds.record(commands, map.image());
     }
     const gpu::Pass pass(commands, "lookup");
     lookup_.record(commands, input.receivers, input.frame.light, layers_,
-                   contents_ ? contents_->image() : map_.image(), is_bounded ? &bounds_ : nullptr,
+                   contents ? contents->image() : map.image(), is_bounded ? &bounds : nullptr,
                    survey_.get(), visibility);
 }
 

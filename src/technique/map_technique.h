@@ -139,7 +139,7 @@ public:
     /// MapLookup::show_proven(), for those who count.
     void show_proven() { lookup_.show_proven(); }
     /// The map of the last frame, for them as well.
-    const DepthMap& map() const { return map_; }
+    const DepthMap& map() const { return maps_->map; }
 
 protected:
     MapTechnique(Context& context, const TechniqueInfo& info, const MapOptions& options);
@@ -155,21 +155,29 @@ protected:
     PlannedLayer local_layer(const Frame& frame, const Seen& seen, const LightView& view,
                              bool tight) const;
 
+    void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) override;
+
 private:
+    /// What frames leave for later ones.
+    struct Maps {
+        Maps(const gpu::Device& device, const MapOptions& options);
+        DepthMap map;
+        std::unique_ptr<ContentMap> contents;  // where they are not the depths
+        MapBounds bounds;                      // where filters are skipped by them
+        std::uint64_t memory_bytes() const;
+    };
+
     bool survey(gpu::Commands& commands, const RecordInput& input) final;
-    void record(gpu::Commands& commands, const RecordInput& input, gpu::Image& visibility) final;
+    void forget() final { maps_ = std::make_unique<Maps>(context().device(), options_); }
     void describe_texels(const Frame& frame, Visibility::Impl& out) final;
     std::uint64_t memory_bytes() const final {
-        return map_.memory_bytes() + (contents_ ? contents_->memory_bytes() : 0) +
-               (survey_ ? survey_->memory_bytes() : 0) + bounds_.memory_bytes() +
+        return maps_->memory_bytes() + (survey_ ? survey_->memory_bytes() : 0) +
                lookup_.memory_bytes();
     }
 
     MapOptions options_;
     std::unique_ptr<ReceiverSurvey> survey_;  // where maps are fitted to the picture
-    DepthMap map_;
-    std::unique_ptr<ContentMap> contents_;  // where they are not the depths
-    MapBounds bounds_;                      // where filters are skipped by them
+    std::unique_ptr<Maps> maps_;
     MapLookup lookup_;
     LookupLayers layers_;  // of the last frame
 };

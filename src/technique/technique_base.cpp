@@ -63,10 +63,15 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
         recording = Clock::now();
         commands = submission_->begin();
     }
-    record(commands, input, visibility);
-    commands.use(visibility, gpu::Use::storage_read);
-    stats.cpu_ms += ms_since(recording);
-    submit();
+    try {
+        record(commands, input, visibility);
+        commands.use(visibility, gpu::Use::storage_read);
+        stats.cpu_ms += ms_since(recording);
+        submit();
+    } catch (...) {
+        forget();
+        throw;
+    }
     stats.memory_bytes = memory_bytes();
     describe_texels(frame, out.impl());
 }

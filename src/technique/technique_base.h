@@ -62,6 +62,8 @@ protected:
     /// in the uses it found them in.
     virtual void record(gpu::Commands& commands, const RecordInput& input,
                         gpu::Image& visibility) = 0;
+    /// What record() noted of its commands for later frames is void: it threw, or they did not run.
+    virtual void forget() {}
     virtual std::uint64_t memory_bytes() const = 0;
     /// Tells `out` of the texels, for techniques that have some.
     virtual void describe_texels(const Frame& frame, Visibility::Impl& out);
