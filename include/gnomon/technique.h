@@ -112,9 +112,9 @@ struct TechniqueInfo {
     std::string_view title;                ///< "Shadow map"
     std::string_view source;               ///< keys into docs/references.bib, separated by commas
     LightKinds lights = LightKinds::none;  ///< the lights it can shadow; others throw
-    Penumbra penumbra = Penumbra::none;
-    bool honors_alpha = true;  ///< false: alpha masks count as solid
-    bool self_shadows = true;  ///< false: no instance casts shadows on itself
+    Penumbra penumbra = Penumbra::none;    ///< with default parameters
+    bool honors_alpha = true;              ///< false: alpha masks count as solid
+    bool self_shadows = true;              ///< false: no instance casts shadows on itself
     const std::vector<ParamInfo>& (*params)() = nullptr;
     std::unique_ptr<Technique> (*make)(Context&, const Params&) = nullptr;
 };

@@ -87,10 +87,12 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
              "exponential_variance", "moments"},
             "what a texel holds: what the light saw, as a depth or as a distance in a float, four "
             "bytes or two; or what is blurred, and bounds how much of it hides a receiver"),
-        choice<Options, MapFilter>("filter", &Options::filter,
-                                   {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4",
-                                    "taps_16", "disc", "footprint", "pcss"},
-                                   "how texels are compared, where they are not blurred"),
+        choice<Options, MapFilter>(
+            "filter", &Options::filter,
+            {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4", "taps_16", "disc",
+             "footprint", "pcss"},
+            "how texels are compared, where they are not blurred; pcss makes "
+            "the penumbra physical"),
         integer<Options>("filter_taps", &Options::filter_taps, 1, 64, "1",
                          "of disc, footprint and pcss, which searches with as many again"),
         number<Options>("filter_radius", &Options::filter_radius, 0.0, 64.0, "texels", "of disc"),
