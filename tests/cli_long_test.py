@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""The commands of `gnomon` that work for long, as their users meet them: hours of sun, bakes, and what is
+left of them and of comparisons when they are interrupted. GNOMON_CLI is the path of the program."""
+
+import csv
+import json
+import resource
+import signal
+import subprocess
+import sys
+import unittest
+
+from cli_case import CLI, INPUT, INTERRUPTED, MACHINE, SMALL, TIMEOUT_S, CliTest
+
+
+class Sun(CliTest):
+    DAY = ("--place", "48.137,11.575", "--date", "2026-03-20")
+    QUICK = ("--minutes", 30, *SMALL)
+
+    def sun(self, *flags):
+        return self.assert_works("sun", "cube", "-o", self.folder / "hours", *self.QUICK, *flags)
+
+    def rows(self, name="hours.csv"):
+        with open(self.folder / "hours" / name, encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def fails(self, words, *flags):
+        self.assert_fails(INPUT, words, "sun", "cube", "-o", self.folder / "hours", *flags)
+        self.assertNotIn("hours", self.files())
+
+    def test_surfaces(self):
+        told = self.sun(*self.DAY, "--texel", 0.25, "--at-least", "2h", "--at-least", 6)
+        self.assertEqual(self.files(), ["hours", "hours/hours.csv", "hours/hours.exr",
+                                        "hours/top.png", "hours/view.png"])
+        for word in ("sunrise 2026-03-20", "each change", ">=2 h", ">=6 h", "\nall ", "\nup "):
+            self.assertIn(word, told)
+        self.assertEqual(told.splitlines()[-1], str(self.folder / "hours" / "view.png"))
+        rows = self.rows()
+        self.assertEqual(list(rows[0]), "x,y,z,nx,ny,nz,area_m2,hours,longest".split(","))
+        self.assertTrue(all(0 <= float(row["longest"]) <= float(row["hours"]) <= 12.2 for row in rows))
+
+    def test_texel_size_is_told_when_it_is_chosen(self):
+        self.assertRegex(self.sun(*self.DAY), r"--texel 0\.\d+ was chosen")
+
+    def test_fronts_are_a_part_of_both_sides(self):
+        def area(*flags):
+            self.sun(*self.DAY, "--texel", 0.5, *flags)
+            return sum(float(row["area_m2"]) for row in self.rows())
+        self.assertLess(area("--fronts"), area())
+
+    def test_sensors(self):
+        points = self.folder / "points.csv"
+        points.write_text("x,y,z,nx,ny,nz\n100,0,100,0,1,0\n100,0,100,0,-1,0\n100,0,100\n", encoding="utf-8")
+        self.sun(*self.DAY, "--sensors", points)
+        hours = [float(row["hours"]) for row in self.rows()]
+        self.assertEqual(hours[0], hours[2])
+        self.assertAlmostEqual(hours[0], 12.0, delta=0.1)  # an equinox, far from the cube
+        self.assertEqual(hours[1], 0.0)
+
+    def test_sensors_in_the_coordinates_of_a_file_with_z_up(self):
+        wall = self.folder / "wall.obj"  # along the meridian, west of the point, with +Y north
+        wall.write_text("v 0 -1000 0\nv 0 1000 0\nv 0 1000 1000\nv 0 -1000 1000\nf 1 2 3 4\n", encoding="utf-8")
+        points = self.folder / "points.csv"
+        points.write_text("1,0,0\n-1,0,0\n0.5,0,2000\n", encoding="utf-8")
+        self.assert_works("sun", wall, "--up", "z", "-o", self.folder / "hours", *self.DAY, "--minutes", 2,
+                          "--sensors", points, *SMALL)
+        rows = self.rows()
+        self.assertEqual([(row["x"], row["z"]) for row in rows],
+                         [("1.0000", "0.0000"), ("-1.0000", "0.0000"), ("0.5000", "2000.0000")])
+        self.assertEqual([row["nz"] for row in rows], ["1"] * 3)
+        morning, evening, whole = (float(row["hours"]) for row in rows)
+        self.assertAlmostEqual(morning, whole / 2, delta=0.05)  # noon is not quite the middle
+        self.assertAlmostEqual(evening, whole / 2, delta=0.05)
+
+    def test_grid_and_surfaces_together(self):
+        told = self.sun(*self.DAY, "--grid", "1,0.5", "--texel", 0.5)
+        self.assertIn("the grid's height is 0.5 m", told)
+        self.assertIn("hours/grid_hours.csv", self.files())
+        self.assertIn("hours/texels_hours.exr", self.files())
+
+    def test_period(self):
+        told = self.sun("--place", "48.137,11.575", "--from", "2026-03-01", "--to", "2026-03-31", "--step", 10,
+                        "--texel", 0.5, "--at-least", 4)
+        self.assertIn("4 of 31 days", told)
+        self.assertIn("every day", told)
+        for row in self.rows():
+            self.assertLessEqual(float(row["hours_worst_day"]), float(row["hours_per_day"]) + 0.001)
+
+    def test_year(self):
+        told = self.assert_works("sun", "cube", "-o", self.folder / "hours", "--place", "48.137,11.575", "--year",
+                                 2026, "--grid", 1, *SMALL)
+        self.assertIn("all 365 days", told)
+
+    def test_polar_night_is_an_answer(self):
+        told = self.sun("--place", "69.65,18.96", "--date", "2026-12-21", "--texel", 0.5)
+        self.assertIn("polar night", told)
+
+    def test_what_is_missing_or_wrong(self):
+        place, date = self.DAY[:2], self.DAY[2:]
+        self.fails(["--place is missing"], *date)
+        self.fails(["--date", "--from", "--year"], *place)
+        self.fails(["--date", "--from", "--year"], *self.DAY, "--year", 2026)
+        self.fails(["--date", "--from", "--year"], *place, "--from", "2026-01-01")
+        self.fails(["--to", "before"], *place, "--from", "2026-02-01", "--to", "2026-01-01")
+        self.fails(["--step"], *self.DAY, "--step", 3)
+        self.fails(["--date", "2026-02-30", "does not exist"], *place, "--date", "2026-02-30")
+        self.fails(["--place", "91"], "--place", "91,0", *date)
+        self.fails(["--minutes", "1", "2 to 60"], *self.DAY, "--minutes", 1)
+        self.fails(["--at-least", "25", "0 to 24"], *self.DAY, "--at-least", "25h")
+        self.fails(["--grid", "1,2,3"], *self.DAY, "--grid", "1,2,3")
+        self.fails(["grid", "1e-06"], *self.DAY, "--grid", "1e-6")
+        self.fails(["nowhere.csv"], *self.DAY, "--sensors", self.folder / "nowhere.csv")
+        points = self.folder / "points.csv"
+        points.write_text("1,2,3\n1,2\n", encoding="utf-8")
+        self.fails(["points.csv, line 2"], *self.DAY, "--sensors", points)
+        self.assert_fails(INPUT, ["-o"], "sun", "cube", *self.DAY)
+        self.assert_fails(INPUT, ["-o", "does not exist"], "sun", "cube", *self.DAY, "-o",
+                          self.folder / "no" / "hours")
+
+    def test_folder_keeps_what_else_it_holds(self):
+        (self.folder / "hours").mkdir()
+        (self.folder / "hours" / "plan.txt").write_text("mine", encoding="utf-8")
+        self.sun(*self.DAY, "--texel", 0.5)
+        self.assertEqual((self.folder / "hours" / "plan.txt").read_text(encoding="utf-8"), "mine")
+
+    def test_pages_of_an_earlier_run_go(self):
+        (self.folder / "hours").mkdir()
+        mine = ["hours.old.exr", "hours.1.png", "north_hours.exr"]
+        for name in [*mine, "hours.0.exr", "hours.12.exr"]:
+            (self.folder / "hours" / name).write_text("earlier", encoding="utf-8")
+        self.sun(*self.DAY, "--texel", 0.5)
+        pages = [name for name in self.files() if name.endswith((".exr", "1.png"))]
+        self.assertEqual(pages, sorted(f"hours/{name}" for name in [*mine, "hours.exr"]))
+        self.sun(*self.DAY, "--grid", 1)  # has no pages
+        self.assertNotIn("hours/hours.exr", self.files())
+
+
+class Bake(CliTest):
+    SUN = ("--sun", "place=48.137,11.575,date=2026-06-21,steps=40")
+    SWEEP = {"kind": "direction", "keys": [{"time": 0, "value": [-1, 0.5, 0]}, {"time": 8, "value": [0, 1, 0]},
+                                           {"time": 30, "value": [1, 1, 1]}]}
+
+    def bake(self, *flags, **options):
+        return self.assert_works("bake", "cube", "--texel", 0.25, *flags, "-o", self.folder / "day", **options)
+
+    def content(self, name="day"):
+        return {path.name: path.read_bytes() for path in (self.folder / name).iterdir()}
+
+    def light(self, content):
+        path = self.folder / "sweep.json"
+        path.write_text(json.dumps(content), encoding="utf-8")
+        return path
+
+    def test_light_path(self):
+        told = self.bake("--light", f"path={self.light(self.SWEEP)},diameter=2,steps=60", "--bits", 16)
+        self.assertIn("light path of 3 keys", told)
+        path = json.loads(self.content()["bake.json"])["path"]
+        self.assertEqual((path["begin_s"], path["end_s"], path["place"]), (0, 30, ""))
+        self.assertAlmostEqual(path["angular_diameter_rad"], 0.0349066, places=6)
+        self.assertEqual(len(path["to_light_ws"]), 60)
+        middle = path["to_light_ws"][16]  # of step 16: 8.25 s, just past the key overhead
+        self.assertGreater(middle[1], 0.999)
+
+    def test_what_is_missing_or_wrong(self):
+        def fails(words, *flags):
+            self.assert_fails(INPUT, words, "bake", "cube", *flags, "-o", self.folder / "day")
+        light = f"path={self.light(self.SWEEP)}"
+        fails(["--sun", "--light"])
+        fails(["--sun and --light are both given"], *self.SUN, "--light", light)
+        fails(["--light", "path"], "--light", "steps=4")
+        fails(["--light", "steps", "300", "255"], "--light", f"{light},steps=300")
+        fails(["diameter", "-1", "0 to 180"], "--light", f"{light},diameter=-1")
+        fails(["nowhere.json"], "--light", "path=nowhere.json")
+        lamp = {"kind": "position", "keys": self.SWEEP["keys"]}
+        fails(["sweep.json", "positions"], "--light", f"path={self.light(lamp)}")
+        fails(["sweep.json", "one key"], "--light",
+              f"path={self.light({**self.SWEEP, 'keys': self.SWEEP['keys'][:1]})}")
+        self.assertEqual(self.files(), ["sweep.json"])
+
+    def test_full_disk_keeps_what_is_done(self):
+        # A limit on the size of files fails as a full disk does. scene.glb has a megabyte, the times
+        # of 8,000 texels a tenth of it.
+        limit = 400_000
+
+        def limited():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        def flags(name):
+            return ("bake", "courtyard", "--texel", 1, *self.SUN, "-o", self.folder / name)
+        self.assert_works(*flags("whole"))
+        kept = self.folder / "day.unfinished"
+        self.assert_fails(MACHINE, ["scene.glb", str(kept), "--resume"], *flags("day"), preexec_fn=limited)
+        self.assertEqual([name for name in self.files() if "day" in name], ["day.unfinished"])
+        self.assertGreater(kept.stat().st_size, 30_000)
+        self.assert_works(*flags("day"), "--resume")
+        self.assertEqual(self.content("day"), self.content("whole"))
+        self.assertFalse(kept.exists())
+
+
+class Interrupt(CliTest):
+    COMPARE = ("compare", "courtyard", "--size", "1920x1080", "--reference-samples", "65536")
+    SUN = ("sun", "courtyard", "--place", "48.137,11.575", "--year", "2026", "--minutes", "2", "--texel", "0.01")
+
+    def interrupt(self, number, arguments=COMPARE):
+        """Sends the signal to a long command once it tells its progress; its exit code and stderr."""
+        def as_from_a_terminal():
+            # A shell's background jobs, and so perhaps we, ignore Ctrl-C; the program would too.
+            signal.signal(number, signal.SIG_DFL)
+
+        command = [CLI, *arguments, "-o", str(self.folder / "report")]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              preexec_fn=as_from_a_terminal) as process:
+            try:
+                for line in process.stderr:
+                    if line.endswith("%\n") or line.endswith("left\n"):
+                        break
+                process.send_signal(number)
+                stdout, stderr = process.communicate(timeout=TIMEOUT_S)
+            except BaseException:
+                process.kill()
+                raise
+        self.assertEqual(stdout, "")
+        return process.returncode, stderr
+
+    def test_ctrl_c_leaves_nothing(self):
+        code, stderr = self.interrupt(signal.SIGINT)
+        self.assertEqual(code, INTERRUPTED, stderr)
+        self.assertRegex(stderr.splitlines()[-1], "^error: cancelled")
+        self.assertEqual(self.files(), [])
+
+    def test_ctrl_c_leaves_no_hours(self):
+        code, stderr = self.interrupt(signal.SIGINT, self.SUN)
+        self.assertEqual(code, INTERRUPTED, stderr)
+        self.assertEqual(self.files(), [])
+
+    def test_termination_leaves_nothing(self):
+        code, stderr = self.interrupt(signal.SIGTERM)
+        self.assertEqual(code, 128 + signal.SIGTERM, stderr)
+        self.assertEqual(self.files(), [])
+
+
+if __name__ == "__main__":
+    if not CLI:
+        sys.exit("GNOMON_CLI must be the path of the program gnomon")
+    unittest.main()
