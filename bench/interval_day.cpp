@@ -5,8 +5,8 @@
 //
 // The day is that of the scene's own sun, at 48 degrees north, from sunrise to sunset, a frame
 // every MINUTES (30), 640 x 360. The truth is SAMPLES (256) rays over a disc of 0.53 degrees. Each
-// setting is told with its mean and its greatest RMSE over the frames, its share of the first
-// one's mean, what it keeps in memory, and how long its look-up of a frame takes. Rows in brackets
+// setting is told with its mean and its greatest RMSE over the frames, its share of the first one's
+// mean, what it keeps in device memory, and how long its look-up of a frame takes. Rows in brackets
 // have no texels: each pixel's own intervals, in 255 and 1023 steps, show what remains when texels
 // are as small as can be. With -o, DIR gets a picture of the differences of each frame: red is too
 // light, blue too dark. With -z, +Z of an OBJ file points up.
@@ -144,7 +144,7 @@ public:
         double least_ms = std::numeric_limits<double>::max();
         for (std::size_t i = 0; i < moments.size(); ++i) {
             const Visibility visibility = found(moments[i], stats);
-            least_ms = std::min(least_ms, stats.cpu_ms);
+            least_ms = std::min(least_ms, stats.cpu_ms + stats.gpu_ms);
             const double rmse = compare(visibility, moments[i].truth, moments[i].mask).rmse;
             sum += rmse;
             greatest = std::max(greatest, rmse);

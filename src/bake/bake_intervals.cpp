@@ -90,16 +90,11 @@ IntervalPage blank_page(unsigned side, int pairs) {
     return page;
 }
 
-std::size_t value_index(const IntervalPage& page, std::size_t texel, std::size_t interval) {
-    const std::size_t per_pair = std::size_t{page.side_texels} * page.side_texels;
-    return ((interval / kIntervalsPerPair) * per_pair + texel) * kIntervalsPerPair +
-           interval % kIntervalsPerPair;
-}
-
 void put(IntervalPage& page, std::size_t texel, const bake::LitTimes& intervals) {
     for (std::size_t i = 0; i < intervals.size(); ++i) {
-        page.rises[value_index(page, texel, i)] = intervals[i].rise;
-        page.falls[value_index(page, texel, i)] = intervals[i].fall;
+        const std::size_t at = bake::value_index(page, texel, i);
+        page.rises[at] = intervals[i].rise;
+        page.falls[at] = intervals[i].fall;
     }
 }
 
@@ -273,7 +268,7 @@ double interval_visibility(const IntervalPage& page, unsigned x, unsigned y,
     const double codes = window.codes_per_step;
     double seen = 0.0;
     for (std::size_t i = 0; i < kIntervalsPerPair * static_cast<std::size_t>(page.pairs); ++i) {
-        const std::size_t at = value_index(page, texel, i);
+        const std::size_t at = bake::value_index(page, texel, i);
         seen += bake::seen_part(page.rises[at], page.falls[at], window.at_step * codes,
                                 window.width_steps * codes, window.even);
     }

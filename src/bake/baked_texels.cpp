@@ -23,7 +23,7 @@ unsigned texel_in(double place, unsigned first, unsigned count) {
 }
 
 /// Texels that are nearer are at one place.
-constexpr double kLeastApart_texels = 1.0 / kPlaceCodes;
+constexpr double kLeastApart_texels = 1.0 / shared::kPlaceCodes;
 
 /// Where `p` is between two places, in [0, 1].
 double part_between(double p, double from, double to) {

@@ -17,6 +17,12 @@ double disc_before(double x) {
 
 }  // namespace
 
+std::size_t value_index(const IntervalPage& page, std::size_t texel, std::size_t interval) {
+    constexpr std::size_t kPerPair = IntervalPage::kIntervalsPerPair;
+    const std::size_t texels = std::size_t{page.side_texels} * page.side_texels;
+    return ((interval / kPerPair) * texels + texel) * kPerPair + interval % kPerPair;
+}
+
 std::uint64_t close_gaps(LitTimes& intervals, std::size_t most) {
     if (intervals.size() <= most) return 0;
     const auto gap = [&](std::size_t i) { return intervals[i + 1].rise - intervals[i].fall; };

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gnomon/bake.h>
+
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +16,9 @@ struct CodedInterval {
 
 /// Of one texel, in order of time; they do not touch.
 using LitTimes = std::vector<CodedInterval>;
+
+/// Where rise and fall of a texel's interval are on a page.
+std::size_t value_index(const IntervalPage& page, std::size_t texel, std::size_t interval);
 
 /// Joins neighbours, over the shortest gaps first, until there are at most `most` of them. Returns
 /// the codes that were dark and are now lit.

@@ -5,6 +5,7 @@
 #include "bake/texel_edges.h"
 
 #include "bake/interval_codes.h"
+#include "bake/lookup.shared.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -20,16 +21,11 @@ namespace {
 
 using glm::dvec2;
 
-/// Of places, whose spread along one axis times that across it, as part of the square of their sum,
-/// is 1/4 for the corners of a square and 3/16 for three of them: the rest is nearly in a line.
-constexpr double kLeastSpread = 0.02;
-/// Slower edges are so nearly along the path that their slope is not known so well.
-constexpr double kMostSlowness = 4.0;
-/// Of the light's angle to a surface that it grazes: a tenth of a degree.
-constexpr double kLeastSine = 0.002;
-/// Of the path: edges whose times are farther apart have nothing to do with each other, or pass so
-/// slowly that samples between them tell more. Three quarters of an hour of thirteen.
-constexpr double kMostApart = 1.0 / 16.0;
+// In double.
+const double kLeastSpread = shared::kLeastSpread;
+const double kMostSlowness = shared::kMostSlowness;
+const double kLeastSine = shared::kLeastSine;
+const double kMostApart = shared::kMostApart;
 /// Of the path: shadows that pass in less, as those of wires, would make all the ground fine that
 /// they sweep. Six minutes of thirteen hours.
 constexpr double kShortest = 1.0 / 128.0;
@@ -70,14 +66,11 @@ struct Edges {
 
 Edges edges_of(const IntervalPage& page, std::size_t texel) {
     Edges edges;
-    const std::size_t per_pair = std::size_t{page.side_texels} * page.side_texels;
-    for (int pair = 0; pair < page.pairs; ++pair) {
-        for (std::size_t channel = 0; channel < 4; ++channel) {
-            const std::size_t at =
-                (static_cast<std::size_t>(pair) * per_pair + texel) * 4 + channel;
-            if (page.rises[at] == IntervalPage::kNoRise) return edges;
-            edges.add(page.rises[at], page.falls[at]);
-        }
+    const std::size_t most = IntervalPage::kIntervalsPerPair * static_cast<std::size_t>(page.pairs);
+    for (std::size_t i = 0; i < most; ++i) {
+        const std::size_t at = value_index(page, texel, i);
+        if (page.rises[at] == IntervalPage::kNoRise) break;
+        edges.add(page.rises[at], page.falls[at]);
     }
     return edges;
 }

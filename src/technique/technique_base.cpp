@@ -43,7 +43,8 @@ void GpuTechnique::prepare_scene(const Scene& scene, Progress& progress) {
 void GpuTechnique::describe_texels(const Frame&, Visibility::Impl&) {}
 
 void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats& stats,
-                                Progress&) {
+                                Progress& progress) {
+    prepare_light(frame, progress);
     const std::shared_ptr<FrameReceivers> receivers = context().receivers(frame);
     const raster::GpuScene& scene = context().gpu_scene(frame.scene);
     gpu::Image& visibility = out.impl().device_target(context(), frame.size);

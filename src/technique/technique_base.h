@@ -55,6 +55,9 @@ protected:
 
     void prepare_scene(const Scene& scene, Progress& progress) override;
 
+    /// Before a frame is recorded: makes what depends on its light and may take long, as bakes do,
+    /// unless there is one for it. Throws Error{cancelled}.
+    virtual void prepare_light(const Frame&, Progress&) {}
     /// Records what the host must have read of the frame before record() can plan it, and tells
     /// whether that is anything: it is then submitted and waited for.
     virtual bool survey(gpu::Commands&, const RecordInput&) { return false; }

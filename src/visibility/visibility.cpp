@@ -79,6 +79,7 @@ void Visibility::Impl::reset(Context::Impl& context, Extent size) {
     size_ = size;
     host_valid_ = device_valid_ = false;
     texel_size_ = nullptr;
+    texel_size_on_ = nullptr;
     filter_radius_texels_ = 0.0f;
     frame_.reset();
     texel_image_ = {};
@@ -148,6 +149,13 @@ void Visibility::Impl::set_texels(TexelSize texel_size, float filter_radius_texe
     frame_ = frame;
 }
 
+void Visibility::Impl::set_texels(TexelSizeOn texel_size, float filter_radius_texels,
+                                  const Frame& frame) {
+    texel_size_on_ = std::move(texel_size);
+    filter_radius_texels_ = filter_radius_texels;
+    frame_ = frame;
+}
+
 void Visibility::Impl::set_texels(Image texel_size_m, float filter_radius_texels) {
     texel_image_ = std::move(texel_size_m);
     filter_radius_texels_ = filter_radius_texels;
@@ -164,9 +172,17 @@ const Image& Visibility::Impl::texel_slant_px() {
 }
 
 void Visibility::Impl::make_texel_images() {
-    if (!texel_size_ || !texel_image_.empty()) return;
+    if (!(texel_size_ || texel_size_on_) || !texel_image_.empty()) return;
     Progress silent;
     const std::shared_ptr<FrameReceivers> receivers = context_->receiver_points(*frame_, silent);
+    if (texel_size_on_) {
+        texel_image_ = Image(size_, 1);
+        for (std::size_t i = 0; i < receivers->points.size(); ++i) {
+            const trace::Receiver& receiver = receivers->points[i];
+            if (receiver.exists()) texel_image_.pixels()[i] = texel_size_on_(receiver);
+        }
+        return;
+    }
     const glm::dmat4 clip_from_world(frame_->camera.clip_from_world(size_));
     const shared::LightShape light = light_shape(frame_->light);
     texel_image_ = Image(size_, 1);

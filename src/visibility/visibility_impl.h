@@ -9,6 +9,8 @@ namespace gnomon {
 
 /// Side in metres of a technique's texel at a point of the world.
 using TexelSize = std::function<float(Vec3 p_ws)>;
+/// The same of texels that lie on the receivers.
+using TexelSizeOn = std::function<float(const trace::Receiver& receiver)>;
 
 /// An image of one float a pixel that is on the device, on the host, or both. Must not outlive the
 /// Context that it was rendered with.
@@ -26,7 +28,9 @@ public:
 
     /// Tells the texels of what was rendered for `frame`, which lie across the light.
     void set_texels(TexelSize texel_size, float filter_radius_texels, const Frame& frame);
-    /// The same by one value a pixel, of texels that lie on the receivers.
+    /// The same of texels that lie on the receivers.
+    void set_texels(TexelSizeOn texel_size, float filter_radius_texels, const Frame& frame);
+    /// The same by one value a pixel.
     void set_texels(Image texel_size_m, float filter_radius_texels);
     /// Made from the receivers at the first call, unless it was given.
     const Image& texel_size_m();
@@ -44,6 +48,7 @@ private:
     Image host_;
     gpu::Image device_;
     TexelSize texel_size_;
+    TexelSizeOn texel_size_on_;
     float filter_radius_texels_ = 0.0f;
     std::optional<Frame> frame_;
     Image texel_image_, texel_slant_;

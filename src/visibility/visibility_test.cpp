@@ -112,6 +112,11 @@ TEST_F(VisibilityTest, TexelsAreLongerWhereTheLightIsAslant) {
 
     // Texels of the receivers themselves are as long as they are.
     visibility.impl().host_target(impl(), frame.size);
+    visibility.impl().set_texels(
+        [](const trace::Receiver& receiver) { return 5.0f + receiver.normal_ws.z; }, 2.0f, frame);
+    EXPECT_EQ(visibility.texel_size_m().at(20, 7), 6.0f);
+    EXPECT_TRUE(visibility.texel_slant_px().empty());
+    visibility.impl().host_target(impl(), frame.size);
     visibility.impl().set_texels(Image(frame.size, 1, kTexel_m), 2.0f);
     EXPECT_FALSE(visibility.texel_size_m().empty());
     EXPECT_TRUE(visibility.texel_slant_px().empty());

@@ -5,16 +5,15 @@
 // rays for each, and their ends from rays between steps; receivers move the edges of shadows of
 // their four texels to their own time, not take the nearest texel's; where the four have not the
 // same edges there are finer samples; and moments count by the height of the sun's disc there, not
-// alike. Runs on the host.
+// alike. Baked on the host, looked up on the device.
 
 #include "bake/baked_texels.h"
 #include "bake/circle_path.h"
-#include "base/parallel.h"
+#include "device_texels.h"
 #include "lightmap/surface.h"
+#include "occlusion_interval_maps.comp.spv.h"
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,9 +26,13 @@ const TechniqueInfo& occlusion_interval_maps_info();
 
 namespace {
 
+namespace shared = occlusion_interval_maps::shared;
+using occlusion_interval_maps::DeviceTexels;
+using occlusion_interval_maps::FacetTable;
+
 /// A light this near to the baked circle is on it: a tenth of the sun's radius.
 constexpr double kOnCircle_rad = 5e-4;
-constexpr std::size_t kReceiversPerTask = 4096;
+constexpr unsigned kGroupSize = 8;
 constexpr DVec3 kUp(0.0, 1.0, 0.0);
 
 enum class TimeBits { eight, sixteen };
@@ -83,21 +86,39 @@ double lit_area_m2(const Scene& scene, const BakePath& path) {
     return area_m2;
 }
 
-class OcclusionIntervalMaps final : public HostTechnique {
+gpu::Pipeline lookup_pipeline(const gpu::Device& device, const Options& options) {
+    using enum gpu::BindingType;
+    return gpu::Pipeline(
+        device, gpu::ComputePipelineInfo{
+                    .code = shaders::occlusion_interval_maps_comp,
+                    .layout = {{storage_image, storage_image, storage_buffer, storage_buffer,
+                                storage_buffer, storage_buffer, storage_buffer, storage_buffer,
+                                storage_buffer, storage_buffer, storage_buffer, storage_buffer},
+                               sizeof(shared::LookupPush)},
+                    .constants = {static_cast<std::uint32_t>(options.lookup),
+                                  options.weight == Weight::even ? VK_TRUE : VK_FALSE}});
+}
+
+class OcclusionIntervalMaps final : public GpuTechnique {
 public:
     OcclusionIntervalMaps(Context& context, const Options& options)
-        : HostTechnique(context, occlusion_interval_maps_info()), options_(options) {}
+        : GpuTechnique(context, occlusion_interval_maps_info()),
+          options_(options),
+          lookup_(lookup_pipeline(context.impl().device(), options)) {}
 
 private:
     /// What is baked, for lights on one circle.
     struct Baked {
         bake::PathThrough through;
         bool ignore_alpha = false;
-        bake::BakedTexels texels;
-        std::optional<bake::TexelFinder> finder;
+        int path_codes = 0;
+        int fine_parts = 1;
+        DeviceTexels device;
+        std::shared_ptr<const FacetTable> facets;  ///< visibilities may outlive the bake
     };
 
     void prepare_scene(const Scene& scene, Progress& progress) override {
+        GpuTechnique::prepare_scene(scene, progress);
         baked_ = nullptr;
         for (const Light& light : scene.lights()) {
             if (const auto* sun = std::get_if<DirectionalLight>(&light)) {
@@ -105,6 +126,12 @@ private:
                 return;
             }
         }
+    }
+
+    void prepare_light(const Frame& frame, Progress& progress) override {
+        const auto& sun = std::get<DirectionalLight>(frame.light);
+        if (!is_baked_for(sun, frame.ignore_alpha))
+            bake_for(frame.scene, sun, frame.ignore_alpha, progress);
     }
 
     int steps() const {
@@ -137,85 +164,88 @@ private:
         double texel_size_m = options_.texel_size_m > 0.0 ? options_.texel_size_m
                                                           : std::sqrt(area_m2 / options_.texels);
         if (options_.half_resolution) texel_size_m *= 2.0;
-        if (!(area_m2 > 0.0)) {  // nothing ever faces the light
-            baked_ = std::move(baked);
-            return;
+        bake::BakedTexels texels;
+        if (area_m2 > 0.0) {  // else nothing ever faces the light
+            texels =
+                bake::baked_texels(scene, baked->through.path,
+                                   {.texel_size_m = texel_size_m,
+                                    .bits = bits(),
+                                    .most_pairs = IntervalPage::kMostPairs,
+                                    .ignore_alpha = ignore_alpha,
+                                    .resume_file = {}},
+                                   {.lit_sides_only = true, .fine_parts = fine_parts()}, progress);
         }
-        baked->texels =
-            bake::baked_texels(scene, baked->through.path,
-                               {.texel_size_m = texel_size_m,
-                                .bits = bits(),
-                                .most_pairs = 16,
-                                .ignore_alpha = ignore_alpha,
-                                .resume_file = {}},
-                               {.lit_sides_only = true, .fine_parts = fine_parts()}, progress);
-        baked->finder.emplace(baked->texels);
+        upload(scene, texels, *baked);
         baked_ = std::move(baked);
     }
 
-    void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
-                 std::span<float> out, Progress& progress) override {
-        std::ranges::fill(out, 1.0f);
-        const auto& sun = std::get<DirectionalLight>(frame.light);
-        const DVec3 to_light(sun.to_light_ws);
-        if (!is_baked_for(sun, frame.ignore_alpha))
-            bake_for(frame.scene, sun, frame.ignore_alpha, progress);
-        bake::LightOnPath light;
-        const DVec3 along = glm::cross(baked_->through.path.pole_ws, glm::normalize(to_light));
-        if (glm::length(along) > 0.0) {  // else it stands still, and has neither
-            light.along_ws = glm::normalize(along);
-            light.across_ws = glm::cross(glm::normalize(to_light), light.along_ws);
-        }
-        light.window = {.at_step = bake::step_on(baked_->through, to_light, kOnCircle_rad),
-                        .width_steps = static_cast<double>(sun.angular_diameter_rad) *
-                                       baked_->through.steps_per_rad,
-                        .codes_per_step = codes_per_step(bits()),
-                        .even = options_.weight == Weight::even};
-        parallel_for(
-            receivers.size(), kReceiversPerTask,
-            [&](std::size_t first, std::size_t last) {
-                for (std::size_t i = first; i < last; ++i) {
-                    if (!receivers[i].exists()) continue;
-                    const lightmap::Facet* facet =
-                        baked_->finder ? baked_->finder->facet_of(receivers[i]) : nullptr;
-                    out[i] = facet == nullptr ? 0.0f
-                                              : static_cast<float>(baked_->finder->visibility(
-                                                    *facet, receivers[i], options_.lookup, light));
-                }
-            },
-            "looking up intervals", &progress);
+    void upload(const Scene& scene, const bake::BakedTexels& texels, Baked& out) {
+        occlusion_interval_maps::PackedTexels packed = occlusion_interval_maps::pack(scene, texels);
+        out.path_codes = texels.path_codes;
+        out.fine_parts = texels.fine.parts;
+        out.device = DeviceTexels(context().device(), packed);
+        out.facets = std::make_shared<const FacetTable>(std::move(packed.facets));
     }
 
-    void describe_texels(std::span<const trace::Receiver> receivers,
-                         Visibility::Impl& out) override {
-        if (!baked_ || !baked_->finder || receivers.empty()) return;
-        Image sizes_m(out.size(), 1);
-        for (std::size_t i = 0; i < receivers.size(); ++i) {
-            if (!receivers[i].exists()) continue;
-            const lightmap::Facet* facet = baked_->finder->facet_of(receivers[i]);
-            if (facet == nullptr) continue;
-            sizes_m.pixels()[i] =
-                static_cast<float>(std::max(glm::length(facet->u_ws), glm::length(facet->v_ws)));
+    shared::LookupPush push(const Frame& frame, const raster::Receivers& receivers) const {
+        const auto& sun = std::get<DirectionalLight>(frame.light);
+        const DVec3 to_light = glm::normalize(DVec3(sun.to_light_ws));
+        const double codes = codes_per_step(bits());
+        shared::LookupPush push{
+            .es_from_clip = receivers.eye_from_clip(),
+            .eye_ws = receivers.camera.eye_ws(),
+            .along_ws = Vec3(0.0f),
+            .across_ws = Vec3(0.0f),
+            .at_codes =
+                static_cast<float>(codes * bake::step_on(baked_->through, to_light, kOnCircle_rad)),
+            .width_codes =
+                static_cast<float>(codes * static_cast<double>(sun.angular_diameter_rad) *
+                                   baked_->through.steps_per_rad),
+            .path_codes = static_cast<float>(baked_->path_codes),
+            .fine_parts = static_cast<std::uint32_t>(baked_->fine_parts),
+            .size = {receivers.size.width, receivers.size.height}};
+        const DVec3 along = glm::cross(baked_->through.path.pole_ws, to_light);
+        if (glm::length(along) > 0.0) {  // else it stands still, and has neither
+            push.along_ws = Vec3(glm::normalize(along));
+            push.across_ws = Vec3(glm::cross(to_light, glm::normalize(along)));
         }
+        return push;
+    }
+
+    void record(gpu::Commands& commands, const RecordInput& input,
+                gpu::Image& visibility) override {
+        const gpu::Pass pass(commands, "lookup");
+        commands.use(visibility, gpu::Use::storage_write);
+        DeviceTexels& texels = baked_->device;
+        const raster::GpuScene& scene = input.scene;
+        texels.use(commands);
+        commands.bind(
+            lookup_,
+            {gpu::StorageImage{input.receivers.ids.view()}, gpu::StorageImage{visibility.view()},
+             gpu::StorageBuffer{&scene.instances()}, gpu::StorageBuffer{&scene.slots()},
+             gpu::StorageBuffer{&scene.positions()}, gpu::StorageBuffer{&scene.indices()},
+             gpu::StorageBuffer{&texels.facet_numbers}, gpu::StorageBuffer{&texels.facets},
+             gpu::StorageBuffer{&texels.charts}, gpu::StorageBuffer{&texels.first_samples},
+             gpu::StorageBuffer{&texels.texels}, gpu::StorageBuffer{&texels.intervals}});
+        commands.push(lookup_, push(input.frame, input.receivers));
+        commands.dispatch(input.frame.size, kGroupSize);
+    }
+
+    void describe_texels(const Frame& frame, Visibility::Impl& out) override {
         const float radius_texels = options_.lookup == bake::TexelLookup::nearest ? 0.5f : 1.0f;
-        out.set_texels(std::move(sizes_m), radius_texels);
+        out.set_texels(
+            [facets = baked_->facets](const trace::Receiver& receiver) {
+                return facets->texel_size_m(receiver);
+            },
+            radius_texels, frame);
     }
 
     std::uint64_t memory_bytes() const override {
-        std::uint64_t bytes = 0;
-        if (!baked_) return bytes;
-        const auto add = [&](const IntervalPage& page, const bake::SamplePlaces& places) {
-            bytes += (page.rises.size() + page.falls.size()) * sizeof(std::uint16_t) +
-                     places.size() * sizeof(bake::SamplePlace);
-        };
-        const bake::BakedTexels& texels = baked_->texels;
-        for (std::size_t i = 0; i < texels.pages.size(); ++i)
-            add(texels.pages[i], texels.places[i]);
-        add(texels.fine.samples, texels.fine.places);
-        return bytes;
+        return baked_ ? baked_->device.memory_bytes() : 0;
     }
 
     Options options_;
+    gpu::Pipeline lookup_;
     std::unique_ptr<Baked> baked_;
 };
 
