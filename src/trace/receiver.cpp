@@ -50,6 +50,15 @@ DVec3 Triangle::front_normal_ws() const {
     return mirrored ? -normal : normal;
 }
 
+DVec3 Triangle::barycentric(DVec3 p_ws) const {
+    const auto& [a, b, c] = corners_ws;
+    const DVec3 normal = glm::cross(b - a, c - a);
+    const double area2 = glm::dot(normal, normal);
+    const double v = glm::dot(glm::cross(p_ws - a, c - a), normal) / area2;
+    const double w = glm::dot(glm::cross(b - a, p_ws - a), normal) / area2;
+    return {1.0 - v - w, v, w};
+}
+
 Triangle world_triangle(const Scene& scene, SurfaceId surface) {
     const Instance& instance = scene.instances()[surface.instance];
     const Mesh& mesh = scene.meshes()[instance.mesh];

@@ -46,6 +46,8 @@ struct Triangle {
 
     /// Of length twice the area, on the side that is the material's front.
     DVec3 front_normal_ws() const;
+    /// Coordinates of the point of its plane that is nearest to `p_ws`. It has an area.
+    DVec3 barycentric(DVec3 p_ws) const;
 };
 
 Triangle world_triangle(const Scene& scene, SurfaceId surface);

@@ -14,6 +14,7 @@
 
 #include "base/parallel.h"
 #include "trace/light_sample.h"
+#include "visibility/light_shape.h"
 
 #include <algorithm>
 #include <cassert>
@@ -36,35 +37,6 @@ constexpr unsigned kFirstSeed = 3;
 /// How high above the surface, in cells, a receiver looks for its vertices: higher than what lies
 /// on it, such as a road's markings, lower than a wall.
 constexpr double kLookHeight_cells = 1.0 / 32.0;
-
-/// What decides how much of a light is seen.
-struct Place {
-    using Numbers = std::vector<float>;
-    static void add(Numbers& numbers, Vec3 v) {
-        for (const float x : {v.x, v.y, v.z})
-            numbers.push_back(x);
-    }
-    static Numbers of(std::initializer_list<Vec3> vectors, float size = 0.0f) {
-        Numbers numbers{size};
-        for (const Vec3 v : vectors)
-            add(numbers, v);
-        return numbers;
-    }
-    Numbers operator()(const DirectionalLight& light) const {
-        return of({light.to_light_ws}, light.angular_diameter_rad);
-    }
-    Numbers operator()(const PointLight& light) const { return of({light.position_ws}); }
-    Numbers operator()(const SpotLight& light) const { return of({light.position_ws}); }
-    Numbers operator()(const SphereLight& light) const {
-        return of({light.center_ws}, light.radius_m);
-    }
-    Numbers operator()(const DiscLight& light) const {
-        return of({light.center_ws, light.normal_ws}, light.radius_m);
-    }
-    Numbers operator()(const RectLight& light) const {
-        return of({light.center_ws, light.half_u_ws, light.half_v_ws});
-    }
-};
 
 /// Tells of a part of a task as of the whole.
 class PartProgress final : public Progress {
@@ -147,7 +119,10 @@ bool differ(const std::array<float, 3>& values) {
 }  // namespace
 
 bool same_place(const Light& a, const Light& b) {
-    return a.index() == b.index() && std::visit(Place{}, a) == std::visit(Place{}, b);
+    const shared::LightShape p = light_shape(a);
+    const shared::LightShape q = light_shape(b);
+    return a.index() == b.index() && p.position == q.position && p.radius == q.radius &&
+           p.half_u == q.half_u && p.half_v == q.half_v && p.normal == q.normal;
 }
 
 VertexBake::VertexBake(const Scene& scene, const SceneGrid& grid, const trace::Tracer& tracer,
@@ -203,7 +178,7 @@ void VertexLookup::look_up(std::span<const Receiver> receivers, std::span<float>
         const DVec3 normal_ws(receiver.normal_ws);
         const DVec3 p_ws(receiver.position_ws);
         const bool front = glm::dot(triangle.front_normal_ws(), normal_ws) > 0.0;
-        const GridCell cell = cell_at(grid.parts, barycentric(triangle, p_ws));
+        const GridCell cell = cell_at(grid.parts, triangle.barycentric(p_ws));
         std::array<float, 3> values{};
         for (int k = 0; k < 3; ++k) {
             values[k] = bake_.value(front, grid.first + vertex_index(grid.parts, cell.vertices[k]));

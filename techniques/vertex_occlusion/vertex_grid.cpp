@@ -69,15 +69,6 @@ GridCell cell_at(unsigned parts, DVec3 barycentric) {
             weights / (weights.x + weights.y + weights.z)};
 }
 
-DVec3 barycentric(const trace::Triangle& triangle, DVec3 p_ws) {
-    const auto& [a, b, c] = triangle.corners_ws;
-    const DVec3 normal = glm::cross(b - a, c - a);
-    const double area2 = glm::dot(normal, normal);
-    const double v = glm::dot(glm::cross(p_ws - a, c - a), normal) / area2;
-    const double w = glm::dot(glm::cross(b - a, p_ws - a), normal) / area2;
-    return {1.0 - v - w, v, w};
-}
-
 unsigned parts_for(double longest_m, double edge_m) {
     if (!(edge_m > 0.0 && longest_m > edge_m)) return 1;
     // More are never afforded.

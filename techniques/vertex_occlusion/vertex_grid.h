@@ -36,10 +36,6 @@ struct GridCell {
 /// `barycentric` adds up to 1; what rounding has put outside of the triangle counts as on its edge.
 GridCell cell_at(unsigned parts, DVec3 barycentric);
 
-/// Coordinates of the point of the triangle's plane that is nearest to `p_ws`. The triangle has an
-/// area.
-DVec3 barycentric(const trace::Triangle& triangle, DVec3 p_ws);
-
 /// How many parts the edges of a triangle are cut into, so that none is longer than `edge_m`; 1 if
 /// that is 0.
 unsigned parts_for(double longest_m, double edge_m);

@@ -3,6 +3,7 @@
 #include <gnomon/error.h>
 #include <gnomon/technique.h>
 
+#include "raster/small_scene_test.h"
 #include "vertex_bake.h"
 #include "visibility/context_test.h"
 
@@ -19,21 +20,10 @@ namespace {
 using namespace vertex_occlusion;
 using trace::Receiver;
 
-Mesh quad(Vec3 corner, Vec3 u, Vec3 v) {
-    Mesh mesh;
-    mesh.positions = {corner, corner + u, corner + u + v, corner + v};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
-}
+using raster::quad;
 
-Scene scene_of(const std::vector<Mesh>& meshes) {
-    SceneData data;
-    data.materials.emplace_back();
-    for (const Mesh& mesh : meshes) {
-        data.instances.push_back({.mesh = static_cast<std::uint32_t>(data.meshes.size())});
-        data.meshes.push_back(mesh);
-    }
-    return Scene(std::move(data));
+Scene scene_of(std::vector<Mesh> meshes) {
+    return Scene(raster::scene_data(std::move(meshes)));
 }
 
 /// Facing up, |x| and |z| up to 1.

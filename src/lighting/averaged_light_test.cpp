@@ -1,11 +1,11 @@
-#include "averaged_light.h"
+#include "lighting/averaged_light.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <utility>
 
-namespace gnomon::vertex_occlusion {
+namespace gnomon::lighting {
 namespace {
 
 constexpr Vec3 kUp{0, 0, 1};
@@ -138,4 +138,4 @@ TEST(AveragedLight, PointsToWhatIsSeenOfALight) {
 }
 
 }  // namespace
-}  // namespace gnomon::vertex_occlusion
+}  // namespace gnomon::lighting

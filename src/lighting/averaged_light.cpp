@@ -7,7 +7,7 @@
 // the direction follows lights that are turned on and off. With lights that have extent a vector is
 // the mean towards what is seen of the light.
 
-#include "averaged_light.h"
+#include "lighting/averaged_light.h"
 
 #include "base/parallel.h"
 #include "trace/light_sample.h"
@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gnomon::vertex_occlusion {
+namespace gnomon::lighting {
 
 namespace {
 
@@ -160,4 +160,4 @@ float bump_factor(Vec3 averaged_ts, Vec3 bump_ts) {
     return std::min(bumped / averaged_ts.z, kMostExaggeration);
 }
 
-}  // namespace gnomon::vertex_occlusion
+}  // namespace gnomon::lighting

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace gnomon::vertex_occlusion {
+namespace gnomon::lighting {
 
 /// What a vertex keeps of a light that stands still.
 struct VertexLight {
@@ -70,4 +70,4 @@ inline constexpr float kMostExaggeration = 2.0f;
 /// [0, kMostExaggeration].
 float bump_factor(Vec3 averaged_ts, Vec3 bump_ts);
 
-}  // namespace gnomon::vertex_occlusion
+}  // namespace gnomon::lighting
