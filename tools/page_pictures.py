@@ -150,11 +150,21 @@ def web_picture(folder):
         save("web", [image.convert("RGB").resize(WEB_SIZE, Image.LANCZOS)], 1)
 
 
+def bump_picture(folder):
+    """What no scene has, a bump map: bench/bump_light draws it."""
+    program = CLI.resolve().parents[2] / "bench/bump_light"
+    subprocess.run([program, f"{folder}/bumps.png"], check=True, stdout=subprocess.DEVNULL)
+    with Image.open(f"{folder}/bumps.png") as image:
+        side = image.height
+        save("vertex_occlusion-bumps", [image.convert("RGB").crop((i * side, 0, (i + 1) * side, side))
+                                        for i in range(image.width // side)], 3)
+
+
 def main():
     (ROOT / "docs" / "images").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         frame = f"{folder}/frame.png"
-        wanted = sys.argv[2:] or [*PICTURES, "sun_hours", "compare", "web"]
+        wanted = sys.argv[2:] or [*PICTURES, "vertex_occlusion-bumps", "sun_hours", "compare", "web"]
         for name, (size, crop, columns, commands) in PICTURES.items():
             if name not in wanted:
                 continue
@@ -164,6 +174,8 @@ def main():
                 gnomon("render", *command.split(), *truth, "-o", frame, "--size", size)
                 panels.append(cropped(frame, crop))
             save(name, panels, columns)
+        if "vertex_occlusion-bumps" in wanted:
+            bump_picture(folder)
         if "sun_hours" in wanted:
             gnomon("sun", "courtyard", "-o", f"{folder}/hours", *SUN_HOURS)
             with Image.open(f"{folder}/hours/view.png") as image:
