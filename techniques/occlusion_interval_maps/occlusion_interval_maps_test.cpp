@@ -37,8 +37,8 @@ struct Setting {
     int bits = 16;
 };
 
-void PrintTo(const Setting& setting, std::ostream* out) {
-    *out << setting.lookup << ", " << setting.weight << ", " << setting.bits << " bits";
+std::ostream& operator<<(std::ostream& out, const Setting& setting) {
+    return out << setting.lookup << ", " << setting.weight << ", " << setting.bits << " bits";
 }
 
 bake::TexelLookup lookup_of(const Setting& setting) {
