@@ -76,17 +76,13 @@ RangeTerms range_terms(const DayPath& path) {
     return terms;
 }
 
-/// The corner of the receivers' bounding rectangle, and its sides: along the way to the receiver
-/// that is farthest from the first, and at right angles to it.
+/// Around the receivers: its centre, and half of its sides.
 struct Rectangle {
     DVec3 center, half_u, half_v;
 };
 
-Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
-    const auto far_from_first = [&](DVec3 p) { return glm::dot(p - origins[0], p - origins[0]); };
-    const DVec3 farthest = *std::ranges::max_element(origins, {}, far_from_first);
-    if (!(far_from_first(farthest) > 0.0)) return {origins[0], DVec3(0.0), DVec3(0.0)};
-    const DVec3 u = glm::normalize(farthest - origins[0]);
+/// With a side along `u`, a unit vector in the plane of the receivers.
+Rectangle rectangle_along(std::span<const DVec3> origins, DVec3 normal, DVec3 u) {
     const DVec3 v = glm::cross(normal, u);
     double low_u = 0.0, high_u = 0.0, low_v = 0.0, high_v = 0.0;
     for (const DVec3& origin : origins) {
@@ -99,6 +95,24 @@ Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
     }
     return {origins[0] + 0.5 * (low_u + high_u) * u + 0.5 * (low_v + high_v) * v,
             0.5 * kLonger * (high_u - low_u) * u, 0.5 * kLonger * (high_v - low_v) * v};
+}
+
+/// The smaller one of two: along the way from the first receiver to the next, which fits rows of
+/// texels; and along that to the farthest, a diagonal of a square of texels, which fits lines.
+Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
+    const auto far_from_first = [&](DVec3 p) { return glm::dot(p - origins[0], p - origins[0]); };
+    const DVec3 farthest = *std::ranges::max_element(origins, {}, far_from_first);
+    if (!(far_from_first(farthest) > 0.0)) return {origins[0], DVec3(0.0), DVec3(0.0)};
+    const auto towards = [&](DVec3 p) {
+        return rectangle_along(origins, normal, glm::normalize(p - origins[0]));
+    };
+    const Rectangle diagonal = towards(farthest);
+    if (!(far_from_first(origins[1]) > 0.0)) return diagonal;
+    const Rectangle row = towards(origins[1]);
+    const auto area2 = [](const Rectangle& r) {
+        return glm::dot(r.half_u, r.half_u) * glm::dot(r.half_v, r.half_v);
+    };
+    return area2(row) < area2(diagonal) ? row : diagonal;
 }
 
 float coordinate_along(DVec3 offset, DVec3 axis) {
