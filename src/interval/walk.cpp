@@ -28,23 +28,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::interval::HWY_NAMESPACE {
 
-/// Children that some step can see, nearest first.
-struct SeenChildren {
-    int count = 0;
-    struct Child {
-        float distance2;
-        Walk::Entry entry;
-    } children[kWidth];
-
-    /// Few of 16 are seen: inserting them is fastest.
-    HWY_INLINE void insert(const Child& child) {
-        int place = count++;
-        for (; place > 0 && children[place - 1].distance2 > child.distance2; --place)
-            children[place] = children[place - 1];
-        children[place] = child;
-    }
-};
-
 /// Boxes that reach above the tile's plane.
 HWY_INLINE Lanes above_tile(const Tile& tile, const Boxes& box) {
     const auto highest = [&](Vf low, Vf high, int axis) HWY_ATTR {
@@ -67,10 +50,25 @@ HWY_INLINE Vf distance2(const Boxes& box) {
     return dot(gaps, gaps);
 }
 
+template <typename T>
+HWY_INLINE void prefetch(const T& object) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&object);
+    for (std::size_t line = 0; line < sizeof(T); line += 64)
+        hwy::Prefetch(bytes + line);
+}
+
+/// Children of a node and the steps that can see them.
+struct Children {
+    alignas(64) float first[kWidth], last[kWidth];
+    /// Distances, as numbers of which no two are the same; -1 = not seen.
+    alignas(64) std::int32_t order[kWidth];
+    std::uint32_t seen;
+};
+
 HWY_INLINE void find_children(const Walk& walk, const Node& node, int first_step, int last_step,
-                              SeenChildren& seen) {
+                              Children& children) {
     const Tile& tile = walk.tile;
-    alignas(64) float first[kLanes], last[kLanes], distances2[kLanes];
+    children.seen = 0;
     for (int lane0 = 0; lane0 < kWidth; lane0 += kLanes) {
         const Vi child = hn::Load(Ints(), node.child + lane0);
         const Boxes box{load3(node.lower, lane0) - splat3(tile.upper_m),
@@ -78,17 +76,37 @@ HWY_INLINE void find_children(const Walk& walk, const Node& node, int first_step
         const Steps steps = cut(steps_towards(walk.ranges, box), first_step, last_step);
         const Lanes present =
             hn::RebindMask(Floats(), hn::Ne(child, hn::Set(Ints(), Node::kNoChild)));
-        std::uint32_t lanes = bits_of(hn::And(hn::And(present, steps.any), above_tile(tile, box)));
-        if (lanes == 0) continue;
-        hn::Store(steps.first, Floats(), first);
-        hn::Store(steps.last, Floats(), last);
-        hn::Store(distance2(box), Floats(), distances2);
-        for (; lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
-            seen.insert({distances2[lane],
-                         {node.child[lane0 + lane], static_cast<std::int32_t>(first[lane]),
-                          static_cast<std::int32_t>(last[lane])}});
+        const Lanes seen = hn::And(hn::And(present, steps.any), above_tile(tile, box));
+        // Floats that are not negative are in the order of their bits; the last ones tell lanes.
+        const Vi distances =
+            hn::AndNot(hn::Set(Ints(), kWidth - 1), hn::BitCast(Ints(), distance2(box)));
+        const Vi order = hn::Or(distances, hn::Iota(Ints(), lane0));
+        const Vi none = hn::Set(Ints(), -1);
+        hn::Store(hn::IfThenElse(hn::RebindMask(Ints(), seen), order, none), Ints(),
+                  children.order + lane0);
+        hn::Store(steps.first, Floats(), children.first + lane0);
+        hn::Store(steps.last, Floats(), children.last + lane0);
+        children.seen |= bits_of(seen) << lane0;
+    }
+}
+
+/// Puts the children on the stack, the nearest on top. Counting those that are farther than each
+/// takes no branch that depends on them.
+HWY_INLINE void push_children(Walk& walk, const Node& node, const Children& children,
+                              Walk::Entry* top) {
+    const std::vector<Leaf>& leaves = walk.tree->leaves();
+    for (std::uint32_t rest = children.seen; rest != 0; rest &= rest - 1) {
+        const int lane = std::countr_zero(rest);
+        const Vi order = hn::Set(Ints(), children.order[lane]);
+        std::size_t farther = 0;
+        for (int lane0 = 0; lane0 < kWidth; lane0 += kLanes) {
+            farther +=
+                hn::CountTrue(Ints(), hn::Gt(hn::Load(Ints(), children.order + lane0), order));
         }
+        const std::int32_t child = node.child[lane];
+        top[farther] = {child, static_cast<std::int32_t>(children.first[lane]),
+                        static_cast<std::int32_t>(children.last[lane])};
+        if (child < 0) prefetch(leaves[static_cast<std::size_t>(~child)]);
     }
 }
 
@@ -96,13 +114,6 @@ HWY_INLINE void visit_leaf(Walk& walk, const Leaf& leaf, std::int32_t id, int fi
                            int last_step) {
     for (int lane0 = 0; lane0 < kWidth && !std::isnan(leaf.corner[0][lane0]); lane0 += kLanes)
         walk.leaves[walk.leaf_count++] = {&leaf, id, lane0, first_step, last_step};
-}
-
-template <typename T>
-HWY_INLINE void prefetch(const T& object) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&object);
-    for (std::size_t line = 0; line < sizeof(T); line += 64)
-        hwy::Prefetch(bytes + line);
 }
 
 template <bool kSingle>
@@ -128,14 +139,11 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
             if (walk.has_deadline && is_late(walk)) return false;
             continue;
         }
-        SeenChildren seen;
-        find_children(walk, nodes[static_cast<std::size_t>(entry.child)], entry.first_step,
-                      entry.last_step, seen);
-        for (int i = seen.count; i-- > 0;) {
-            const Walk::Entry& child = seen.children[i].entry;
-            walk.stack[entries++] = child;
-            if (child.child < 0) prefetch(leaves[static_cast<std::size_t>(~child.child)]);
-        }
+        const Node& node = nodes[static_cast<std::size_t>(entry.child)];
+        Children children;
+        find_children(walk, node, entry.first_step, entry.last_step, children);
+        push_children(walk, node, children, walk.stack + entries);
+        entries += std::popcount(children.seen);
     }
     cast_leaves<kSingle>(walk);
     test_pairs<false>(walk);
