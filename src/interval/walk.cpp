@@ -127,8 +127,11 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
     int entries = 0;
     walk.stack[entries++] = {0, 0, walk.steps - 1};
     while (entries > 0) {
-        const Walk::Entry entry = walk.stack[--entries];
-        if (!walk.any_open(entry.first_step, entry.last_step)) continue;
+        Walk::Entry entry = walk.stack[--entries];
+        // What is dark to all texels of a tile is too little to make up for looking closely.
+        const bool is_open = kSingle ? walk.narrow(entry.first_step, entry.last_step)
+                                     : walk.any_open(entry.first_step, entry.last_step);
+        if (!is_open) continue;
         if (entry.child < 0) {
             const auto id = ~entry.child;
             visit_leaf(walk, leaves[static_cast<std::size_t>(id)], id, entry.first_step,

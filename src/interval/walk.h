@@ -5,6 +5,7 @@
 #include "trace/receiver.h"
 
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cstdint>
 
@@ -160,6 +161,22 @@ struct Walk {
         for (int word = first + 1; word < last; ++word)
             any |= open[word];
         return any != 0;
+    }
+    /// Moves the ends of [first_step, last_step] to the nearest open steps in it; false if there
+    /// are none.
+    bool narrow(std::int32_t& first_step, std::int32_t& last_step) const {
+        int first = first_step / 64, last = last_step / 64;
+        std::uint64_t low = open_steps(first, first_step, last_step);
+        while (low == 0) {
+            if (++first > last) return false;
+            low = open_steps(first, first_step, last_step);
+        }
+        std::uint64_t high = open_steps(last, first_step, last_step);
+        while (high == 0)
+            high = open_steps(--last, first_step, last_step);
+        first_step = 64 * first + std::countr_zero(low);
+        last_step = 64 * last + 63 - std::countl_zero(high);
+        return true;
     }
     /// The open steps of a word that are in [first_step, last_step].
     std::uint64_t open_steps(int word, int first_step, int last_step) const {
