@@ -1,5 +1,6 @@
 // Contact: where a caster stands on the ground its shadow begins, whatever the bias, the sun and
-// the filter; and under eaves, where their wall begins.
+// the filter; and under eaves, where their wall begins. A wall that the sun grazes is not in its
+// own shadow.
 
 #include "subjects.h"
 
@@ -139,6 +140,30 @@ TEST_P(Contact, AWallIsDarkUnderItsEaves) {
     std::size_t judged = 0;
     EXPECT_LT(most_lit_under_eaves(GetParam(), judged), 0.25f);
     EXPECT_GT(judged, 2000u);
+}
+
+class GrazedWall : public test::DeviceTest {};
+
+// The map is drawn from the sun's middle, which is just behind the wall; the half of the disc that
+// is before it lights the wall. The wall is a third of the picture.
+TEST_F(GrazedWall, IsLitByWhatItSeesOfTheSun) {
+    constexpr float kBehind = 5e-4f;  // a ninth of the disc's radius
+    const Scene scene =
+        test::make_scene({test::ground(8.0f), test::box({-1, -0.05f, -2}, {1, 3, 0})});
+    const Frame frame{.scene = scene,
+                      .camera = look_at({2.5f, 1.6f, 4.0f}, {0, 1.4f, 0}),
+                      .light = DirectionalLight{.to_light_ws = normalize({0.1f, 1.0f, -kBehind}),
+                                                .angular_diameter_rad = radians(0.53f)},
+                      .size = {160, 120}};
+    const Visibility truth = trace_visibility(context(), frame, {.samples = 64});
+    const ComparisonMask mask = comparison_mask(context(), frame);
+    for (const char* technique : {"lispsm", "psm"}) {
+        for (const char* filter : {"box_3x3", "pcss"}) {
+            const Params params{{"filter", std::string(filter)}, {"map_size", 512}};
+            const Comparison error = compare(test::render(technique, frame, params), truth, mask);
+            EXPECT_LT(error.false_shadow, 0.005) << technique << ", " << filter;
+        }
+    }
 }
 
 class TooMuchBias : public test::DeviceTest {};

@@ -56,7 +56,7 @@ TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_es, vec3
     // m.z is the normal's part along the light, which has no depth where the plane is seen edge on.
     float along = dot(normal_ws, along_light) / dot(along_light, z);
     float least = length(along_light) / abs(dot(along_light, z)) / kMaxGradientSlope;
-    vec2 gradient = -m / (sign(along) * max(abs(along), least));
+    vec2 gradient = -m / max(along, least);  // as a wall that part of the light's disc still meets
     return TexelAt(near ? sqrt((mean + difference) / dot(along_light, along_light)) : 0.0,
                    near ? length(m) : 0.0, near ? gradient : vec2(0.0), u, v, z);
 }

@@ -45,8 +45,8 @@ const TechniqueInfo& shadow_map_info() {
         .title = "Shadow map",
         .source =
             "williams1978, wang1994, reeves1987, bunnell2004, gerasimov2004, king2004, "
-            "fernando2005, "
-            "isidoro2006, donnelly2006, annen2008, lauritzen2008, holbert2011, peters2015",
+            "heckbert1989, fernando2005, isidoro2006, donnelly2006, annen2008, "
+            "lauritzen2008, holbert2011, peters2015",
         .lights = LightKinds::directional | LightKinds::spot,
         .penumbra = Penumbra::fixed_width,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
