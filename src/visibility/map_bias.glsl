@@ -15,9 +15,9 @@ const float kMaxSlope = 10.0;
 // A plane at 89.4°: steeper ones are extended as this one, since normals of 16 bits would tell too little.
 const float kMaxGradientSlope = 100.0;
 
-// Texels' sides that a receiver's plane is followed away from the light: as far as filters of up to four
-// texels follow planes at 45°.
-const float kMaxFall = 2.0;
+// Texels' sides that a receiver's plane is followed away from the light: as far as a filter of two texels
+// follows a plane at 45°. Farther, the ground hides the foot of a wall that falls through it.
+const float kMaxFall = 1.0;
 
 struct TexelAt {
     float side_m;    // across the light, the longer one
