@@ -192,17 +192,18 @@ LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::size_t laye
 }
 
 // Most blocks lie in one layer, which need then not be chosen pixel by pixel; the others are looked
-// up in all of them. Groups fill rectangles: a few more than there are blocks do the last one
-// again.
+// up in all of them, as all are where depths do not tell the layer. Groups fill rectangles: a few
+// more than there are blocks do the last one again.
 std::vector<MapLookup::Part> MapLookup::list(gpu::Commands& commands, const ReceiverSurvey& survey,
-                                             const shared::MapFrame& frame,
+                                             const shared::MapFrame& frame, LayerChoice choice,
                                              std::size_t layer_count) {
     constexpr unsigned kMostInRow = 4096;  // devices take 65535
     const std::span all(frame.layers, layer_count);
     std::vector<std::vector<std::uint32_t>> places(layer_count + 1);  // the last: of several
     for (const SeenBlock& block : survey.blocks()) {
         const std::size_t nearest = layer_at(all, block.nearest_depth);
-        const bool is_one = nearest == layer_at(all, block.farthest_depth * (1.0f - frame.blend));
+        const bool is_one = choice == LayerChoice::by_distance &&
+                            nearest == layer_at(all, block.farthest_depth * (1.0f - frame.blend));
         places[is_one ? nearest : layer_count].push_back(block.place);
     }
     std::vector<std::uint32_t> blocks;
@@ -252,9 +253,9 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     if (survey != nullptr) commands.clear(visibility, {.float32 = {1.0f, 0.0f, 0.0f, 0.0f}});
     const Extent whole{(receivers.size.width + kGroupSize - 1) / kGroupSize,
                        (receivers.size.height + kGroupSize - 1) / kGroupSize};
-    const std::vector<Part> parts = survey != nullptr
-                                        ? list(commands, *survey, frame, layers.size())
-                                        : std::vector<Part>{{0, layers.size(), 0, whole}};
+    const std::vector<Part> parts =
+        survey != nullptr ? list(commands, *survey, frame, lookup_layers.choice, layers.size())
+                          : std::vector<Part>{{0, layers.size(), 0, whole}};
     commands.use(visibility, gpu::Use::storage_write);
     const std::uint32_t proof = bounds == nullptr ? shared::kProofNone
                                 : shows_proven_   ? shared::kProofShown

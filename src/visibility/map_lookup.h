@@ -115,7 +115,8 @@ private:
     LookupPipeline& pipeline(const LookupLayers& layers, std::size_t layer_count,
                              std::uint32_t proof, bool listed);
     std::vector<Part> list(gpu::Commands& commands, const ReceiverSurvey& survey,
-                           const shared::MapFrame& frame, std::size_t layer_count);
+                           const shared::MapFrame& frame, LayerChoice choice,
+                           std::size_t layer_count);
 
     const gpu::Device& device_;
     ReadingOptions reading_;

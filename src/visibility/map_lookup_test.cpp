@@ -4,6 +4,7 @@
 #include "visibility/context_impl.h"
 #include "visibility/context_test.h"
 #include "visibility/depth_map.h"
+#include "visibility/light_view.h"
 #include "visibility/visibility_impl.h"
 
 #include <algorithm>
@@ -44,9 +45,10 @@ protected:
         return visibility;
     }
 
+    static constexpr unsigned kMapSize = 512;
+    static constexpr float kMarginTexels = 3.0f;
+
     static LookupLayers layers_of(const Frame& frame, double blend) {
-        constexpr unsigned kMapSize = 512;
-        constexpr float kMarginTexels = 3.0f;
         constexpr double kEnds_m[] = {1.0, 6.0, 14.0, 100.0};
         LookupLayers layers{.blend = blend};
         for (std::size_t i = 0; i + 1 < std::size(kEnds_m); ++i) {
@@ -77,6 +79,20 @@ TEST_F(MapLookupTest, ListedBlocksGiveThePictureOfAllPixels) {
                 << name << ", " << blend;
         }
     }
+}
+
+// The faces of a cube begin at no distance.
+TEST_F(MapLookupTest, ListedBlocksLookIntoEveryFaceOfACube) {
+    const Scene scene = make_builtin_scene("courtyard");
+    Frame frame{.scene = scene, .camera = scene.cameras().front(), .size = kSize};
+    const Vec3 position_ws = scene.bounds().center();
+    frame.light = PointLight{.position_ws = position_ws};
+    LookupLayers layers{.choice = LayerChoice::by_axis};
+    for (const LightView& view : cube_views(DVec3(position_ws)))
+        layers.layers.push_back({fit_view(view, scene.bounds(), kMapSize, kMarginTexels)});
+    const Visibility all = look_up(frame, layers, false);
+    const Visibility listed = look_up(frame, layers, true);
+    EXPECT_TRUE(std::ranges::equal(listed.image().pixels(), all.image().pixels()));
 }
 
 }  // namespace
