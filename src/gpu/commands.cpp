@@ -393,6 +393,8 @@ Submission::~Submission() {
 Commands Submission::begin() {
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    // What was begun and not submitted, because something threw, is left half recorded.
+    check(vkResetCommandBuffer(commands_, 0), "recording commands");
     check(vkBeginCommandBuffer(commands_, &info), "recording commands");
     timer_.reset(commands_);
     return Commands(device_, commands_, &timer_);

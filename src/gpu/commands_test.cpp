@@ -11,8 +11,9 @@ namespace {
 
 class CommandsTest : public DeviceTest {};
 
+constexpr Extent kSize{8, 8};
+
 TEST_F(CommandsTest, ClearTheTargetsThatTheyAreToldTo) {
-    constexpr Extent kSize{8, 8};
     Image color(device(),
                 {.size = kSize,
                  .format = VK_FORMAT_R32_UINT,
@@ -39,6 +40,25 @@ TEST_F(CommandsTest, ClearTheTargetsThatTheyAreToldTo) {
     submission.submit_and_wait();
     EXPECT_EQ(read_back<std::uint32_t>(device(), color), std::vector<std::uint32_t>(64, 7u));
     EXPECT_EQ(read_back<float>(device(), depth), std::vector<float>(64, 0.0f));  // the far plane
+}
+
+// As when an error is thrown between.
+TEST_F(CommandsTest, BeginAnewWhereTheLastWereNotSubmitted) {
+    Image color(device(),
+                {.size = kSize,
+                 .format = VK_FORMAT_R32_UINT,
+                 .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    Submission submission(device());
+    for (const bool ends : {false, true}) {
+        color.use = Use::none;
+        Commands commands = submission.begin();
+        commands.use(color, Use::color_target);
+        commands.begin_drawing(
+            {.colors = {&color}, .size = kSize, .clear_value = {.uint32 = {7u, 0, 0, 0}}});
+        if (ends) commands.end_drawing();
+    }
+    submission.submit_and_wait();
+    EXPECT_EQ(read_back<std::uint32_t>(device(), color), std::vector<std::uint32_t>(64, 7u));
 }
 
 TEST_F(CommandsTest, TimePassesInTheirOrder) {
