@@ -71,6 +71,7 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
         submit();
     } catch (...) {
         forget();
+        out.impl().forget();
         throw;
     }
     stats.memory_bytes = memory_bytes();

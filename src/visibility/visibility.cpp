@@ -93,6 +93,12 @@ gpu::Image& Visibility::Impl::device_target(Context::Impl& context, Extent size)
     return device_;
 }
 
+void Visibility::Impl::forget() {
+    reset(*context_, {});
+    host_ = {};
+    device_ = {};
+}
+
 void Visibility::Impl::allocate_on_device() {
     if (device_ && device_.size() == size_) return;
     constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_STORAGE_BIT |

@@ -22,6 +22,8 @@ public:
     gpu::Image& device_target(Context::Impl& context, Extent size);
     /// A 1-channel image of that size for a technique to write; what was held is void.
     Image& host_target(Context::Impl& context, Extent size);
+    /// The commands that were to write the target did not run: nothing is held.
+    void forget();
 
     const Image& on_host();
     gpu::Image& on_device();
