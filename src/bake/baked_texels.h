@@ -51,8 +51,8 @@ struct LightOnPath {
     DVec3 along_ws{0.0}, across_ws{0.0};
 };
 
-/// Finds receivers' places on the pages, and what the texels there see: in double what
-/// techniques/occlusion_interval_maps computes on the device.
+/// Finds receivers' places on the pages, and what the texels there see: in double, for what a
+/// device computes of them to be compared with.
 class TexelFinder {
 public:
     explicit TexelFinder(const BakedTexels& baked);

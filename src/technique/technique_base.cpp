@@ -56,15 +56,15 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
         for (const gpu::PassTimer::Time& time : submission_->times())
             stats.passes.push_back({time.name, time.ms});
     };
-    Clock::time_point recording = Clock::now();
-    gpu::Commands commands = submission_->begin();
-    if (survey(commands, input)) {
-        stats.cpu_ms = ms_since(recording);
-        submit();
-        recording = Clock::now();
-        commands = submission_->begin();
-    }
     try {
+        Clock::time_point recording = Clock::now();
+        gpu::Commands commands = submission_->begin();
+        if (survey(commands, input)) {
+            stats.cpu_ms = ms_since(recording);
+            submit();
+            recording = Clock::now();
+            commands = submission_->begin();
+        }
         record(commands, input, visibility);
         commands.use(visibility, gpu::Use::storage_read);
         stats.cpu_ms += ms_since(recording);

@@ -34,6 +34,7 @@ vec4 plane_depths(MapPoint point, vec4 dx, vec4 dy) {
     return clamp(planes, max(point.depth - point.fall, 0.0), point.end);
 }
 
+// Or the depth, where that is stored.
 float stored_distance(sampler2DArray map, float size, vec2 texel, float layer) {
     vec4 bytes = texelFetch(map, ivec3(vec3(clamp(texel, vec2(0.0), vec2(size - 1.0)), layer)), 0);
     return kContent == kContentPackedTwo ? unpacked_from_two(bytes)
@@ -173,11 +174,7 @@ float lit_box_4x4(sampler2DArray map, float size, MapBias bias, MapPoint point) 
 
 // The point, for filters whose taps are anywhere.
 MapPoint ended_by_fetch(sampler2DArray map, float size, MapPoint point) {
-    vec2 texel = clamp(fallen_texel(point), 0.0, size - 1.0);
-    if (kContent != kContentDepth) {
-        return ended(point, size, stored_distance(map, size, texel, point.layer));
-    }
-    return ended(point, size, texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x);
+    return ended(point, size, stored_distance(map, size, fallen_texel(point), point.layer));
 }
 
 // Four of the sixteen taps, the others by turns in squares of four pixels, so that the eye averages them.
