@@ -217,13 +217,17 @@ private:
 
 INSTANTIATE_TEST_SUITE_P(
     Maps, MovedReusing,
-    testing::Values(Reusing{"pssm", "pssm", {{"fit", "stable"}}}, Reusing{"pssm_tight", "pssm", {}},
-                    Reusing{"pssm_layered", "pssm", {{"fit", "stable"}, {"layered", true}}},
-                    Reusing{"pssm_moments", "pssm", {{"fit", "stable"}, {"content", "moments"}}},
-                    Reusing{"omni", "omni", {}},
-                    Reusing{"omni_distance", "omni", {{"content", "distance"}}},
-                    Reusing{"shadow_map", "shadow_map", {}}, Reusing{"lispsm", "lispsm", {}},
-                    Reusing{"tsm", "tsm", {}}, Reusing{"psm", "psm", {}}),
+    testing::Values(
+        Reusing{"pssm", "pssm", {{"fit", "stable"}}}, Reusing{"pssm_tight", "pssm", {}},
+        Reusing{"pssm_vertices", "pssm", {{"fit", "stable"}, {"positions_only", false}}},
+        Reusing{"pssm_indices", "pssm", {{"fit", "stable"}, {"optimised_indices", false}}},
+        Reusing{"pssm_layered", "pssm", {{"fit", "stable"}, {"layered", true}}},
+        Reusing{"pssm_moments", "pssm", {{"fit", "stable"}, {"content", "moments"}}},
+        Reusing{"omni", "omni", {}}, Reusing{"omni_vertices", "omni", {{"positions_only", false}}},
+        Reusing{"omni_indices", "omni", {{"optimised_indices", false}}},
+        Reusing{"omni_distance", "omni", {{"content", "distance"}}},
+        Reusing{"shadow_map", "shadow_map", {}}, Reusing{"lispsm", "lispsm", {}},
+        Reusing{"tsm", "tsm", {}}, Reusing{"psm", "psm", {}}),
     [](const auto& test) { return test.param.label; });
 
 // The camera rests and jumps, so that no map scrolls and all pictures are alike to the bit.

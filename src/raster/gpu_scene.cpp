@@ -51,6 +51,12 @@ bool mirrors(const Instance& instance) {
     return glm::determinant(glm::mat3(instance.world_from_local)) < 0.0f;
 }
 
+shared::VertexAttributes attributes_of(const Mesh& mesh, std::size_t vertex) {
+    const Vec4 color = mesh.colors.empty() ? Vec4(1.0f) : mesh.colors[vertex];
+    return {mesh.normals.empty() ? Vec3(0.0f) : mesh.normals[vertex],
+            mesh.texcoords.empty() ? Vec2(0.0f) : mesh.texcoords[vertex], glm::packUnorm4x8(color)};
+}
+
 template <typename T>
 gpu::Buffer storage(const gpu::Device& device, const std::vector<T>& values,
                     VkBufferUsageFlags more = 0) {
@@ -97,12 +103,8 @@ void GpuScene::upload_meshes(const gpu::Device& device) {
         caster_triangles.insert(caster_triangles.end(), caster.triangles.begin(),
                                 caster.triangles.end());
         caster.triangles = {};
-        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-            const Vec4 color = mesh.colors.empty() ? Vec4(1.0f) : mesh.colors[i];
-            attributes.push_back({mesh.normals.empty() ? Vec3(0.0f) : mesh.normals[i],
-                                  mesh.texcoords.empty() ? Vec2(0.0f) : mesh.texcoords[i],
-                                  glm::packUnorm4x8(color)});
-        }
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+            attributes.push_back(attributes_of(mesh, i));
     }
     positions_ = storage(device, positions, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     indices_ = storage(device, triangles, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
@@ -241,6 +243,15 @@ std::uint64_t GpuScene::memory_bytes() const {
     for (const gpu::Image& texture : textures_)
         bytes += texture.memory_bytes();
     return bytes;
+}
+
+std::vector<WholeVertex> whole_vertices(const Scene& scene) {
+    std::vector<WholeVertex> vertices;
+    for (const Mesh& mesh : scene.meshes()) {
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+            vertices.push_back({mesh.positions[i], attributes_of(mesh, i)});
+    }
+    return vertices;
 }
 
 gpu::PipelineLayoutInfo opaque_layout() {

@@ -19,6 +19,12 @@ struct CasterPart {
     float scale = 1.0f;             ///< most that a metre of its mesh can be in the world
 };
 
+/// A vertex with all that a mesh stores of it, side by side.
+struct WholeVertex {
+    Vec3 position;
+    shared::VertexAttributes attributes;
+};
+
 /// All instances of one mesh that are wound the same way.
 struct Draw {
     std::uint32_t mesh = 0;
@@ -103,6 +109,9 @@ struct ScenePass {
 /// Draws all instances within begin_drawing() / end_drawing().
 void draw_scene(gpu::Commands& commands, const GpuScene& scene, const ScenePass& pass,
                 const Mat4& clip_from_world, bool ignore_alpha);
+
+/// The vertices of all meshes in the order of GpuScene::positions(), for those who want them whole.
+std::vector<WholeVertex> whole_vertices(const Scene& scene);
 
 /// What draw_scene() needs of the pipelines that it is given.
 gpu::PipelineLayoutInfo opaque_layout();

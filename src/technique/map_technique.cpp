@@ -13,7 +13,7 @@ namespace {
 /// A simplified caster may be so much nearer to the light than the surface that it stands for.
 BiasOptions bias(const MapOptions& options) {
     BiasOptions bias = options;
-    bias.bias_constant += options.caster_error;
+    bias.bias_constant += options.simplified_texels();
     return bias;
 }
 
@@ -108,7 +108,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     layers_ = {.choice = planned.choice, .layers = {}, .blend = planned.blend};
     for (const PlannedLayer& layer : planned.layers) {
         drawn.push_back({layer.lookup.fit, drawn_casters(options_, layer),
-                         static_cast<float>(options_.caster_error), options_.faces,
+                         static_cast<float>(options_.simplified_texels()), options_.faces,
                          layer.needed || !options_.cull_casters});
         layers_.layers.push_back(layer.lookup);
         fits.push_back(layer.lookup.fit);
@@ -119,7 +119,9 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
                               {.ignore_alpha = input.frame.ignore_alpha,
                                .reuse = options_.reuse_maps,
                                .multi_draw = options_.multi_draw,
-                               .layered = options_.layered});
+                               .layered = options_.layered,
+                               .positions_only = options_.positions_only,
+                               .optimised_indices = options_.optimised_indices});
     }
     for (std::size_t i = 0; i < fits.size(); ++i)
         fits[i] = map.drawn_fit(i, fits[i]);

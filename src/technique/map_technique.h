@@ -31,6 +31,8 @@ struct MapOptions : BiasOptions, ReadingOptions {
     CasterFaces faces = CasterFaces::lit;
     bool multi_draw = true;
     bool layered = false;
+    bool positions_only = true;
+    bool optimised_indices = true;
     SkipUniform skip_uniform = SkipUniform::automatic;
 
     /// Texels around what receivers need: what the filter reads, how far the bias moves receivers
@@ -40,6 +42,8 @@ struct MapOptions : BiasOptions, ReadingOptions {
                static_cast<float>(normal_offset) * biased_reach_texels(*this, receiver_plane) +
                0.5f;
     }
+    /// Levels are of clusters, so that meshes that are drawn whole are never simplified.
+    double simplified_texels() const { return optimised_indices ? caster_error : 0.0; }
     unsigned size_texels() const { return static_cast<unsigned>(map_size); }
 };
 
@@ -67,6 +71,14 @@ std::vector<typename ParamTable<Options>::Row> caster_rows() {
         boolean<Options>("layered", &Options::layered,
                          "all layers of a map are drawn in one pass, where the device can; it pays "
                          "where passes cost more than what is in them"),
+        boolean<Options>("positions_only", &Options::positions_only,
+                         "casters are drawn from positions alone; otherwise from whole vertices, "
+                         "as a mesh stores them"),
+        boolean<Options>("optimised_indices", &Options::optimised_indices,
+                         "casters' triangles in an order that reuses vertices, in clusters of "
+                         "which only those that are needed are drawn; otherwise in the order of "
+                         "the file, each mesh whole and, whatever caster_error says, never "
+                         "simplified"),
         choice<Options, SkipUniform>(
             "skip_uniform", &Options::skip_uniform, {"automatic", "never", "always"},
             "where bounds of the map's tiles prove a receiver lit or dark, its filter is skipped, "

@@ -44,6 +44,41 @@ const raster::CasterLevel& level_for(const MapLayer& layer,
     return levels[chosen];
 }
 
+/// Parts of one instance that are drawn or left out together: one of them, or all.
+struct Unit {
+    std::uint32_t first_part = 0, end_part = 0;
+    Box3 bounds_ws;
+};
+
+Unit unit_at(const raster::GpuScene& scene, const raster::Draw& draw, std::uint32_t first_part,
+             const CasterOptions& options) {
+    Unit unit{first_part, first_part + 1, scene.part_bounds_ws()[first_part]};
+    if (options.optimised_indices) return unit;
+    const std::uint32_t slot = scene.parts()[first_part].slot;
+    for (; unit.end_part < draw.first_part + draw.part_count; ++unit.end_part) {
+        if (scene.parts()[unit.end_part].slot != slot) break;
+        unit.bounds_ws.include(scene.part_bounds_ws()[unit.end_part].min);
+        unit.bounds_ws.include(scene.part_bounds_ws()[unit.end_part].max);
+    }
+    return unit;
+}
+
+/// The triangles that show the unit in the layer.
+CasterDraw draw_of(const raster::GpuScene& scene, const raster::Draw& draw, const MapLayer& layer,
+                   const Unit& unit, const CasterOptions& options) {
+    const raster::CasterPart& part = scene.parts()[unit.first_part];
+    CasterDraw result{.draw = &draw,
+                      .first_index = draw.first_index,
+                      .index_count = draw.index_count,
+                      .slot = part.slot};
+    if (!options.optimised_indices) return result;
+    const raster::CasterLevel& level =
+        level_for(layer, scene.levels(draw, part), part, unit.bounds_ws);
+    result.first_index = part.first_index + 3 * level.first_triangle;
+    result.index_count = 3 * level.triangle_count;
+    return result;
+}
+
 /// From a light outside of what closes, only faces towards it are nearest. A light at infinity is
 /// outside of everything, and its map's near plane clamps what it would cut open.
 Culled culled_by(const MapLayer& layer, scene::Winding winding) {
@@ -68,28 +103,24 @@ void CasterDraws::clear() {
 }
 
 std::vector<CasterDraw> CasterDraws::add(const raster::GpuScene& scene, const MapLayer& layer,
-                                         std::uint32_t index,
+                                         std::uint32_t index, const CasterOptions& options,
                                          std::span<const std::uint8_t> wanted) {
     const glm::dmat4& from_world = layer.fit.clip_from_world;
     std::vector<CasterDraw> draws;
     for (const raster::Draw& draw : scene.draws()) {
         const Culled culled = culled_by(layer, draw.winding);
-        for (std::uint32_t i = draw.first_part; i < draw.first_part + draw.part_count; ++i) {
-            const raster::CasterPart& part = scene.parts()[i];
-            const std::uint32_t placed = scene.instance_at(part.slot);
+        const std::uint32_t end = draw.first_part + draw.part_count;
+        for (std::uint32_t i = draw.first_part; i < end;) {
+            const Unit unit = unit_at(scene, draw, i, options);
+            i = unit.end_part;
+            const std::uint32_t placed = scene.instance_at(scene.parts()[unit.first_part].slot);
             if (!wanted.empty() && wanted[placed] == 0) continue;
-            const Box3& bounds_ws = scene.part_bounds_ws()[i];
-            if (!layer.casters.holds(bounds_ws)) continue;
-            boxed_texels_ += covered_texels(layer.fit, Mat4(1.0f), bounds_ws).area();
+            if (!layer.casters.holds(unit.bounds_ws)) continue;
+            boxed_texels_ += covered_texels(layer.fit, Mat4(1.0f), unit.bounds_ws).area();
             const Instance& instance = scene.scene().instances()[placed];
-            const raster::CasterLevel& level =
-                level_for(layer, scene.levels(draw, part), part, bounds_ws);
-            add_part(draws,
-                     {.draw = &draw,
-                      .first_index = part.first_index + 3 * level.first_triangle,
-                      .index_count = 3 * level.triangle_count,
-                      .slot = part.slot,
-                      .culled = culled},
+            CasterDraw drawn = draw_of(scene, draw, layer, unit, options);
+            drawn.culled = culled;
+            add_part(draws, drawn,
                      {Mat4(from_world * glm::dmat4(instance.world_from_local)), index});
         }
     }

@@ -26,6 +26,16 @@ struct MapLayer {
     bool needed = true;  ///< nothing is looked up in a layer that is not
 };
 
+/// How casters are drawn.
+struct CasterOptions {
+    bool ignore_alpha = false;
+    bool reuse = false;             ///< what is there and would be drawn alike stays there
+    bool multi_draw = true;         ///< what one state of the pipeline draws, by one command
+    bool layered = false;           ///< all layers in one pass, where they and the device allow it
+    bool positions_only = true;     ///< from positions alone, else from whole vertices
+    bool optimised_indices = true;  ///< in clusters, else meshes whole, as the scene has them
+};
+
 /// Which triangles need not be drawn, by their corners' order in the map's image.
 enum class Culled { none, clockwise, counter_clockwise };
 
@@ -49,9 +59,11 @@ class CasterDraws {
 public:
     void clear();
     /// The casters of a layer, as few draws as they make: of all instances, or where `wanted` has
-    /// one number for each of them, of those whose number is not 0.
+    /// one number for each of them, of those whose number is not 0. Ranges are of the casters'
+    /// index buffer, of meshes that are drawn whole of the scene's own.
     std::vector<CasterDraw> add(const raster::GpuScene& scene, const MapLayer& layer,
-                                std::uint32_t index, std::span<const std::uint8_t> wanted = {});
+                                std::uint32_t index, const CasterOptions& options,
+                                std::span<const std::uint8_t> wanted = {});
 
     const std::vector<CasterInstance>& instances() const { return instances_; }
     std::uint64_t triangles() const { return triangles_; }  ///< over all layers

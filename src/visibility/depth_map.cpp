@@ -33,7 +33,7 @@ constexpr double kLeastKept = 0.5;
 constexpr double kSparse = 0.5;
 
 gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamps_near,
-                              bool layered) {
+                              bool layered, bool positions_only) {
     gpu::GraphicsPipelineInfo info;
     if (masked) {
         using enum gpu::BindingType;
@@ -49,6 +49,7 @@ gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamp
     info.depth_format = kDepthMapFormat;
     info.depth_clamp = clamps_near;
     raster::set_position_input(info);
+    if (!positions_only) info.vertex_stride = sizeof(raster::WholeVertex);
     info.instance_stride = sizeof(CasterInstance);
     for (std::uint32_t column = 0; column < 4; ++column) {
         info.attributes.push_back({.location = 1 + column,
@@ -105,6 +106,7 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                       std::span<const MapLayer> layers, const CasterOptions& options) {
     make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()), options.reuse);
     make_buffers(scene.parts().size() * layers.size() * (options.reuse ? kMostStrips : 1));
+    make_vertices(commands, scene.scene(), options);
     keep_what_holds(scene, options);
     plan(scene, layers, options);
     if (passes_.empty() && moves_.empty() && patches_.empty() && image_.use == gpu::Use::sampled)
@@ -165,6 +167,19 @@ void DepthMap::make_buffers(std::size_t most_draws) {
                             gpu::Placement::device);
 }
 
+void DepthMap::make_vertices(gpu::Commands& commands, const Scene& scene,
+                             const CasterOptions& options) {
+    if (options.positions_only || (vertices_ && same(vertices_of_, scene.contents_identity())))
+        return;
+    const std::vector<raster::WholeVertex> vertices = raster::whole_vertices(scene);
+    const auto bytes = std::as_bytes(std::span(vertices));
+    vertices_ = gpu::Buffer(device_, bytes.size(),
+                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                            gpu::Placement::device);
+    vertices_of_ = scene.contents_identity();
+    commands.update(vertices_, bytes, gpu::Use::vertex_read);
+}
+
 void DepthMap::plan(const raster::GpuScene& scene, std::span<const MapLayer> layers,
                     const CasterOptions& options) {
     casters_.clear();
@@ -180,13 +195,14 @@ void DepthMap::plan(const raster::GpuScene& scene, std::span<const MapLayer> lay
         if (scrolled) {
             if (!scrolled->comes.empty()) moves_.push_back({i, *scrolled});
             for (const TexelRect& strip : scrolled->comes)
-                place_casters(scene, layer, i, strip);
+                place_casters(scene, layer, i, options, strip);
             held_[i]->fit = scrolled->fit;
         } else {
-            place_casters(scene, layer, i, whole);
+            place_casters(scene, layer, i, options, whole);
             held_[i] = {layer.fit, layer.caster_error_texels, layer.faces, {}};
         }
-        if (!moving_.empty()) place_moving(scene, layer, i, !scrolled || !scrolled->comes.empty());
+        if (!moving_.empty())
+            place_moving(scene, layer, i, options, !scrolled || !scrolled->comes.empty());
     }
     const bool all_are_whole = moves_.empty() && passes_.size() == layers.size();
     if (options.layered && device_.optional().layered_output && all_are_whole && agree(layers))
@@ -219,13 +235,13 @@ std::optional<MapScroll> DepthMap::what_stays(const MapLayer& layer, unsigned in
 }
 
 void DepthMap::place_casters(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
-                             const TexelRect& texels) {
+                             const CasterOptions& options, const TexelRect& texels) {
     MapLayer part = layer;
     const bool is_whole = texels == whole_map(layer.fit.size_texels);
     if (!is_whole) part.casters.keep_within(layer.fit, texels);
     const std::uint64_t boxed_before = casters_.boxed_texels();
     passes_.push_back({static_cast<int>(index), layer.fit.clamps_near, texels,
-                       casters_.add(scene, part, index, moving_.still())});
+                       casters_.add(scene, part, index, options, moving_.still())});
     const auto boxed = static_cast<double>(casters_.boxed_texels() - boxed_before);
     passes_.back().is_cleared =
         is_whole && clears_in_rows(device_) && boxed < kSparse * static_cast<double>(texels.area());
@@ -235,7 +251,7 @@ void DepthMap::place_casters(const raster::GpuScene& scene, const MapLayer& laye
 // With the fit that the layer holds: while it rests, each caster covers the same texels in every
 // frame, and one that rests is drawn over itself where another one passes it.
 void DepthMap::place_moving(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
-                            bool whole) {
+                            const CasterOptions& options, bool whole) {
     Held& held = *held_[index];
     MapLayer part = layer;
     part.fit = held.fit;
@@ -247,7 +263,7 @@ void DepthMap::place_moving(const raster::GpuScene& scene, const MapLayer& layer
         texels_ += rect.area();
     const std::vector<std::uint8_t> wanted = moving_.reaching(held.fit, texels);
     patches_.push_back(
-        {index, held.fit.clamps_near, texels, casters_.add(scene, part, index, wanted)});
+        {index, held.fit.clamps_near, texels, casters_.add(scene, part, index, options, wanted)});
 }
 
 // Through the scratch image, because a copy must not overlap what it reads.
@@ -282,11 +298,13 @@ void DepthMap::upload(gpu::Commands& commands) {
     commands.update(commands_, std::as_bytes(std::span(draws)), gpu::Use::vertex_read);
 }
 
-DepthMap::Pipelines& DepthMap::pipelines(bool clamps_near, bool layered) {
-    std::optional<Pipelines>& made = pipelines_[clamps_near ? 1 : 0][layered ? 1 : 0];
+DepthMap::Pipelines& DepthMap::pipelines(bool clamps_near, bool layered, bool positions_only) {
+    std::optional<Pipelines>& made =
+        pipelines_[clamps_near ? 1 : 0][layered ? 1 : 0][positions_only ? 1 : 0];
     if (!made) {
-        made.emplace(Pipelines{caster_pipeline(device_, false, clamps_near, layered),
-                               caster_pipeline(device_, true, clamps_near, layered)});
+        made.emplace(
+            Pipelines{caster_pipeline(device_, false, clamps_near, layered, positions_only),
+                      caster_pipeline(device_, true, clamps_near, layered, positions_only)});
     }
     return *made;
 }
@@ -310,8 +328,8 @@ void DepthMap::draw_passes(gpu::Commands& commands, const raster::GpuScene& scen
                                 .size = map.size(),
                                 .area = area_of(pass.texels),
                                 .clear_depth = !pass.is_cleared});
-        draw(commands, scene, pipelines(pass.clamps_near, pass.layer < 0), pass.draws,
-             first_command, options);
+        draw(commands, scene, pipelines(pass.clamps_near, pass.layer < 0, options.positions_only),
+             pass.draws, first_command, options);
         commands.end_drawing();
         first_command += pass.draws.size();
     }
@@ -338,21 +356,29 @@ void DepthMap::draw_patches(gpu::Commands& commands, const raster::GpuScene& sce
                                 .size = image_.size(),
                                 .area = area_of(around(patch.texels)),
                                 .clear_depth = false});
-        draw(commands, scene, pipelines(patch.clamps_near, false), patch.draws, first_command,
-             options);
+        draw(commands, scene, pipelines(patch.clamps_near, false, options.positions_only),
+             patch.draws, first_command, options);
         commands.end_drawing();
         first_command += patch.draws.size();
     }
+}
+
+void DepthMap::bind_triangles(gpu::Commands& commands, const raster::GpuScene& scene,
+                              const CasterOptions& options) const {
+    const gpu::Buffer& vertices = options.positions_only ? scene.positions() : vertices_;
+    const gpu::Buffer& indices =
+        options.optimised_indices ? scene.caster_indices() : scene.indices();
+    const std::array buffers{vertices.handle(), instances_.handle()};
+    const std::array<VkDeviceSize, 2> offsets{};
+    vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers.data(), offsets.data());
+    vkCmdBindIndexBuffer(commands.handle(), indices.handle(), 0, VK_INDEX_TYPE_UINT32);
 }
 
 void DepthMap::draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pipelines& with,
                     std::span<const CasterDraw> draws, std::uint64_t first_command,
                     const CasterOptions& options) {
     const VkCommandBuffer handle = commands.handle();
-    const std::array buffers{scene.positions().handle(), instances_.handle()};
-    const std::array<VkDeviceSize, 2> offsets{};
-    vkCmdBindVertexBuffers(handle, 0, 2, buffers.data(), offsets.data());
-    vkCmdBindIndexBuffer(handle, scene.caster_indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+    bind_triangles(commands, scene, options);
     const bool multi_draw = options.multi_draw && device_.optional().multi_draw;
     const auto needs_texture = [&](const CasterDraw& draw) {
         return draw.draw->masked && !options.ignore_alpha;

@@ -12,14 +12,6 @@
 
 namespace gnomon {
 
-/// How casters are drawn.
-struct CasterOptions {
-    bool ignore_alpha = false;
-    bool reuse = false;      ///< what is there and would be drawn alike stays there
-    bool multi_draw = true;  ///< what one state of the pipeline draws, by one command
-    bool layered = false;    ///< all layers in one pass, where they and the device allow it
-};
-
 /// A depth map of one or more square layers: D32, reversed, so that 1 is nearest to the light and 0
 /// is nothing.
 class DepthMap {
@@ -44,7 +36,7 @@ public:
     }
     std::uint64_t memory_bytes() const {
         return image_.memory_bytes() + still_.memory_bytes() + scratch_.memory_bytes() +
-               instances_.memory_bytes() + commands_.memory_bytes();
+               instances_.memory_bytes() + commands_.memory_bytes() + vertices_.memory_bytes();
     }
     /// Drawn by the last record(), over all layers: triangles, and the texels that they could
     /// reach.
@@ -89,14 +81,15 @@ private:
     void make_image(unsigned size_texels, unsigned layers, bool reuse);
     void make_still_image();
     void make_buffers(std::size_t most_draws);
+    void make_vertices(gpu::Commands& commands, const Scene& scene, const CasterOptions& options);
     void keep_what_holds(const raster::GpuScene& scene, const CasterOptions& options);
     void plan(const raster::GpuScene& scene, std::span<const MapLayer> layers,
               const CasterOptions& options);
     std::optional<MapScroll> what_stays(const MapLayer& layer, unsigned index) const;
     void place_casters(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
-                       const TexelRect& texels);
+                       const CasterOptions& options, const TexelRect& texels);
     void place_moving(const raster::GpuScene& scene, const MapLayer& layer, unsigned index,
-                      bool whole);
+                      const CasterOptions& options, bool whole);
     void join_passes();
     void move(gpu::Commands& commands);
     void upload(gpu::Commands& commands);
@@ -108,12 +101,15 @@ private:
     void draw(gpu::Commands& commands, const raster::GpuScene& scene, const Pipelines& with,
               std::span<const CasterDraw> draws, std::uint64_t first_command,
               const CasterOptions& options);
-    Pipelines& pipelines(bool clamps_near, bool layered);
+    void bind_triangles(gpu::Commands& commands, const raster::GpuScene& scene,
+                        const CasterOptions& options) const;
+    Pipelines& pipelines(bool clamps_near, bool layered, bool positions_only);
     /// What passes are drawn into.
     gpu::Image& kept() { return moving_.empty() ? image_ : still_; }
 
     const gpu::Device& device_;
-    std::optional<Pipelines> pipelines_[2][2];  // by whether the near plane clamps; layered or not
+    // By whether the near plane clamps, whether layered, and whether from positions alone.
+    std::optional<Pipelines> pipelines_[2][2][2];
     gpu::Image image_;
     gpu::Image still_;    // without the casters that move; only where some do
     gpu::Image scratch_;  // for what moves within a layer; only where maps are reused
@@ -127,6 +123,8 @@ private:
     bool held_ignores_alpha_ = false;
     gpu::Buffer instances_;
     gpu::Buffer commands_;  // of all passes, one after the other
+    gpu::Buffer vertices_;  // whole; only where casters are drawn from them
+    SceneKey vertices_of_;
 };
 
 }  // namespace gnomon

@@ -10,7 +10,10 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <ostream>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gnomon {
@@ -84,6 +87,42 @@ TEST_F(ScrolledDepthMapTest, HoldsWhatDrawingAllOfItWould) {
             EXPECT_LT(off, kAllTexels / 2000) << name << ", frame " << frame;
         }
     }
+}
+
+/// One mesh, level, with its middle at the origin: many clusters.
+Scene sheet_scene() {
+    constexpr int kSquares = 64;  // along a side, of a metre each
+    constexpr auto kCorners = static_cast<unsigned>(kSquares + 1);
+    Mesh sheet;
+    for (int z = 0; z <= kSquares; ++z) {
+        for (int x = 0; x <= kSquares; ++x)
+            sheet.positions.emplace_back(x - kSquares / 2, 0, z - kSquares / 2);
+    }
+    for (unsigned i = 0; i + kCorners + 1 < sheet.positions.size(); ++i) {
+        if (i % kCorners == kCorners - 1) continue;
+        sheet.triangles.emplace_back(i, i + kCorners, i + 1);
+        sheet.triangles.emplace_back(i + 1, i + kCorners, i + kCorners + 1);
+    }
+    SceneData data;
+    data.materials.emplace_back();
+    data.meshes.push_back(std::move(sheet));
+    data.instances = {Instance{}, Instance{}};
+    data.instances[1].world_from_local = glm::translate(Mat4(1.0f), Vec3(0, 1, 0));
+    return Scene(std::move(data));
+}
+
+TEST_F(ScrolledDepthMapTest, LeavesOutClustersButOfMeshesThatAreDrawnWholeNone) {
+    const Scene scene = sheet_scene();
+    const Camera camera = look_at({-28, 3, -28}, {-32, 0, -32});
+    const MapLayer layer = layer_of(scene, camera, {.to_light_ws = normalize(Vec3(1, 4, 2))});
+    DepthMap clusters(device());
+    record(clusters, scene, layer, {.reuse = true});
+    DepthMap meshes(device());
+    record(meshes, scene, layer, {.reuse = true, .optimised_indices = false});
+    EXPECT_GT(clusters.triangles(), 0u);
+    EXPECT_LT(clusters.triangles(), meshes.triangles());
+    EXPECT_EQ(meshes.triangles(), 2 * scene.meshes()[0].triangles.size());
+    EXPECT_EQ(depths(clusters), depths(meshes));
 }
 
 // Where casters cover little, software devices clear in another way.
@@ -193,10 +232,38 @@ protected:
     DirectionalLight light_;
 };
 
-TEST_F(MovedDepthMapTest, HoldsWhatDrawingAllOfItWould) {
+/// How a map is drawn. Each holds to the texel what one does that is drawn anew by default.
+struct Way {
+    std::string label;
+    CasterOptions options;
+};
+
+std::ostream& operator<<(std::ostream& out, const Way& way) {
+    return out << way.label;
+}
+
+class MovedDepthMapWaysTest : public MovedDepthMapTest, public testing::WithParamInterface<Way> {
+protected:
+    static const CasterOptions& options() { return GetParam().options; }
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, MovedDepthMapWaysTest,
+    testing::Values(Way{"defaults", {.reuse = true}},
+                    Way{"one_by_one", {.reuse = true, .multi_draw = false}},
+                    Way{"whole_vertices", {.reuse = true, .positions_only = false}},
+                    Way{"whole_meshes", {.reuse = true, .optimised_indices = false}},
+                    Way{"plain",
+                        {.reuse = true,
+                         .multi_draw = false,
+                         .positions_only = false,
+                         .optimised_indices = false}}),
+    [](const auto& test) { return test.param.label; });
+
+TEST_P(MovedDepthMapWaysTest, HoldsWhatDrawingAllOfItWould) {
     DepthMap map(device());
     const MapLayer rests = layer();
-    record(map, scene_, rests, {.reuse = true});
+    record(map, scene_, rests, options());
     const std::uint64_t all_triangles = map.triangles();
     for (int frame = 0; frame < 10; ++frame) {
         const auto t = static_cast<float>(frame);
@@ -205,17 +272,17 @@ TEST_F(MovedDepthMapTest, HoldsWhatDrawingAllOfItWould) {
             pose("leaves", {0.9f * t - 4.0f, 0, 0.2f * t}),
             pose("urn-001", {0, 0.1f, 0}, 0.2f * std::floor(t / 3.0f))};
         const Scene moved = scene_.moved(poses);
-        EXPECT_TRUE(record(map, moved, rests, {.reuse = true}));
+        EXPECT_TRUE(record(map, moved, rests, options()));
         if (frame > 0) {
             EXPECT_LT(map.texels(), kAllTexels / 2) << frame;
             EXPECT_LT(map.triangles(), all_triangles / 2) << frame;
             EXPECT_FALSE(map.drew_still()) << frame;
         }
         EXPECT_EQ(off(map, moved, rests), 0u) << frame;
-        EXPECT_FALSE(record(map, moved, rests, {.reuse = true}));  // all rest
+        EXPECT_FALSE(record(map, moved, rests, options()));  // all rest
     }
     // Back where they were, they leave nothing behind.
-    record(map, scene_, rests, {.reuse = true});
+    record(map, scene_, rests, options());
     EXPECT_EQ(off(map, scene_, rests), 0u);
 }
 
@@ -264,17 +331,17 @@ TEST_F(MovedDepthMapTest, IsDrawnWholeOnceForWhatMovesForTheFirstTime) {
 }
 
 // As a skin in another pose.
-TEST_F(MovedDepthMapTest, HoldsWhatChangesItsShape) {
+TEST_P(MovedDepthMapWaysTest, HoldsWhatChangesItsShape) {
     DepthMap map(device());
     const MapLayer rests = layer();
-    record(map, scene_, rests, {.reuse = true});
+    record(map, scene_, rests, options());
     for (int frame = 0; frame < 6; ++frame) {
         SceneData data = scene_.data();
         for (Vec3& p : data.meshes[data.instances[instance("leaves")].mesh].positions)
             p.x += 0.1f * static_cast<float>(frame) * p.y * p.y;
         data.instances[instance("urn-001")].world_from_local =
             pose("urn-001", {0, 0.1f * static_cast<float>(frame), 0}).world_from_local;
-        record(map, Scene(data), rests, {.reuse = true});
+        record(map, Scene(data), rests, options());
         if (frame > 1) {
             EXPECT_FALSE(map.drew_still()) << frame;
             EXPECT_LT(map.texels(), kAllTexels / 2) << frame;

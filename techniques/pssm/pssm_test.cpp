@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace gnomon {
@@ -76,7 +77,8 @@ TEST_F(MapTechniqueTest, WaysOfDrawingDoNotChangeThePicture) {
             const Visibility drawn = make_technique(context(), technique)->render(frame);
             for (const auto& [way, value] : {std::pair<const char*, ParamValue>{"faces", "all"},
                                              {"multi_draw", false},
-                                             {"layered", true}}) {
+                                             {"layered", true},
+                                             {"positions_only", false}}) {
                 const Visibility other =
                     make_technique(context(), technique, {{way, value}})->render(frame);
                 EXPECT_TRUE(std::ranges::equal(drawn.image().pixels(), other.image().pixels()))
@@ -84,6 +86,62 @@ TEST_F(MapTechniqueTest, WaysOfDrawingDoNotChangeThePicture) {
             }
         }
     }
+}
+
+// Nothing is simplified of meshes that are drawn whole, and a texel's nearest depth is the same in
+// whatever order triangles come.
+TEST_F(MapTechniqueTest, CastersAsAMeshStoresThemGiveThePictureOfThoseThatAreNotSimplified) {
+    const auto expect_same = [](const char* technique, const Frame& frame, Params params) {
+        params.set("map_size", 512);
+        params.set("caster_error", 0.0);
+        const auto drawn_with = [&](bool positions_only, bool optimised_indices, bool cull) {
+            params.set("positions_only", positions_only);
+            params.set("optimised_indices", optimised_indices);
+            params.set("cull_casters", cull);
+            return make_technique(context(), technique, params)->render(frame);
+        };
+        const Visibility drawn = drawn_with(true, true, false);
+        EXPECT_LT(std::ranges::min(drawn.image().pixels()), 0.5f);
+        const Visibility culled = drawn_with(true, true, true);
+        params.set("caster_error", 0.25);
+        const Visibility whole_meshes = drawn_with(true, false, false);
+        const Visibility as_stored = drawn_with(false, false, false);
+        EXPECT_TRUE(std::ranges::equal(drawn.image().pixels(), whole_meshes.image().pixels()));
+        EXPECT_TRUE(std::ranges::equal(drawn.image().pixels(), as_stored.image().pixels()));
+        // As between casters that are culled and all of them: less is left out of whole meshes.
+        EXPECT_LT(changed(culled, drawn_with(false, false, true)), 2e-4);
+    };
+    for (const char* scene : {"courtyard", "gas-station", "field-small", "jack-o-lantern"}) {
+        SCOPED_TRACE(scene);
+        Frame frame = frame_of(scene);
+        frame.light = sun(radians(35.0f), radians(200.0f));
+        for (const char* technique : {"shadow_map", "lispsm", "tsm", "psm", "pssm"}) {
+            SCOPED_TRACE(technique);
+            expect_same(technique, frame, {});
+        }
+        expect_same("pssm", frame, {{"content", "moments"}});
+        expect_same("pssm", frame, {{"faces", "unlit"}, {"layered", true}});
+        frame.light = PointLight{.position_ws = frame.scene.bounds().center() + Vec3(0, 2, 0)};
+        expect_same("omni", frame, {});
+    }
+}
+
+TEST_F(MapTechniqueTest, OnlyThoseWhoWantWholeVerticesKeepThem) {
+    const Frame frame = frame_of("courtyard");
+    const auto memory_of = [&](bool positions_only, int frames) {
+        const auto technique =
+            make_technique(context(), "pssm", {{"positions_only", positions_only}});
+        for (int i = 0; i < frames; ++i)
+            technique->render(frame);
+        return technique->last_render().memory_bytes;
+    };
+    std::uint64_t vertices = 0;
+    for (const Mesh& mesh : frame.scene.meshes())
+        vertices += mesh.positions.size();
+    // Position, normal, texture coordinates, colour.
+    constexpr std::uint64_t kVertex_bytes = 12 + 12 + 8 + 4;
+    EXPECT_GE(memory_of(false, 1), memory_of(true, 1) + kVertex_bytes * vertices);
+    EXPECT_EQ(memory_of(false, 3), memory_of(false, 1));
 }
 
 TEST_F(MapTechniqueTest, SimplifiedCastersChangeHardlyAPixel) {
