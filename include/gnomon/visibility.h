@@ -41,11 +41,6 @@ public:
     /// technique has none.
     const Image& texel_size_m() const;
 
-    /// 2 channels: by how many pixels (x right, y down) a texel reaches on its receiver along the
-    /// light, which a plane that the light meets aslant lengthens; up to 89°. Empty when there are
-    /// no texels or they lie on the receivers themselves.
-    const Image& texel_slant_px() const;
-
     /// How many texels from its centre the technique's filter reaches; 0 without texels.
     float filter_radius_texels() const;
 
@@ -68,10 +63,12 @@ Visibility trace_visibility(Context& context, const Frame& frame, const TraceOpt
 Visibility trace_visibility(Context& context, const Frame& frame, const TraceOptions& options,
                             Progress& progress);
 
-/// The mask of a frame: receivers whose geometric normal sees any part of the light.
+/// The mask of a frame: receivers whose geometric normal sees any part of the light; and edges by
+/// rays to the middle of suns, point lights and spots.
 ComparisonMask comparison_mask(Context& context, const Frame& frame);
 
-/// A visibility against the truth, by the technique's own texel size and filter radius.
+/// A visibility against the truth, by the technique's own texel size and filter radius. The mask's
+/// edges count for texels that lie across the light.
 Comparison compare(const Visibility& visibility, const Visibility& truth,
                    const ComparisonMask& mask);
 

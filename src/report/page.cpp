@@ -130,7 +130,7 @@ json error_table(const Comparison& error) {
              {"lit", short_percent(error.stray_lit)},
              {"shadow", short_percent(error.stray_shadow)}},
             {{"kind", "artefact"},
-             {"meaning", "of false: farther than its texels, as they lie there, explain"},
+             {"meaning", "of false: farther than its texels explain"},
              {"lit", short_percent(error.artefact_lit)},
              {"shadow", short_percent(error.artefact_shadow)}}};
 }

@@ -55,8 +55,8 @@ const raster::GpuScene& Context::Impl::gpu_scene(const Scene& scene, Progress* p
     return *gpu_scene_;
 }
 
-const trace::Tracer& Context::Impl::tracer(const Scene& scene, bool ignore_alpha,
-                                           Progress& progress) {
+std::shared_ptr<const trace::Tracer> Context::Impl::tracer(const Scene& scene, bool ignore_alpha,
+                                                           Progress& progress) {
     for (const SceneTracer& kept : tracers_) {
         if (kept.ignore_alpha == ignore_alpha && same(kept.scene, scene.identity()))
             return kept.tracer;
@@ -68,7 +68,7 @@ const trace::Tracer& Context::Impl::tracer(const Scene& scene, bool ignore_alpha
     });
     if (tracers_.size() == kKeptTracers) tracers_.erase(tracers_.begin());
     tracers_.push_back({scene.identity(), scene.contents_identity(), ignore_alpha,
-                        trace::Tracer(scene, ignore_alpha, progress)});
+                        std::make_shared<const trace::Tracer>(scene, ignore_alpha, progress)});
     return tracers_.back().tracer;
 }
 
@@ -114,7 +114,7 @@ std::shared_ptr<FrameReceivers> Context::Impl::receiver_points(const Frame& fram
     if (found->points.empty()) {
         const std::vector<trace::SurfaceId> ids = read_ids(found->device);
         found->points = tracer(frame.scene, frame.ignore_alpha, progress)
-                            .receivers(frame.camera, frame.size, ids);
+                            ->receivers(frame.camera, frame.size, ids);
     }
     return found;
 }

@@ -35,7 +35,9 @@ public:
     gpu::Submission& submission() { return submission_; }
 
     const raster::GpuScene& gpu_scene(const Scene& scene, Progress* progress = nullptr);
-    const trace::Tracer& tracer(const Scene& scene, bool ignore_alpha, Progress& progress);
+    /// Stays with whoever holds it.
+    std::shared_ptr<const trace::Tracer> tracer(const Scene& scene, bool ignore_alpha,
+                                                Progress& progress);
 
     /// The receivers of the frame, drawn now unless they are those of the last call.
     std::shared_ptr<FrameReceivers> receivers(const Frame& frame);
@@ -48,7 +50,7 @@ private:
     struct SceneTracer {
         SceneKey scene, contents;
         bool ignore_alpha = false;
-        trace::Tracer tracer;
+        std::shared_ptr<const trace::Tracer> tracer;
     };
     std::vector<trace::SurfaceId> read_ids(raster::Receivers& receivers);
 

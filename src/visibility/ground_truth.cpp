@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "trace/light_sample.h"
+#include "visibility/edge_probe.h"
 #include "visibility/visibility_impl.h"
 
 #include <cmath>
@@ -57,19 +58,23 @@ Visibility trace_visibility(Context& context, const Frame& frame, const TraceOpt
                    kMaxSamples);
     }
     Context::Impl& impl = context.impl();
-    const trace::Tracer& tracer = impl.tracer(frame.scene, frame.ignore_alpha, progress);
+    const std::shared_ptr<const trace::Tracer> tracer =
+        impl.tracer(frame.scene, frame.ignore_alpha, progress);
     const std::shared_ptr<FrameReceivers> receivers = impl.receiver_points(frame, progress);
     Visibility visibility;
-    tracer.visibility(receivers->points, frame.size, frame.light, options.samples, options.seed,
-                      visibility.impl().host_target(impl, frame.size).pixels(), progress);
+    tracer->visibility(receivers->points, frame.size, frame.light, options.samples, options.seed,
+                       visibility.impl().host_target(impl, frame.size).pixels(), progress);
     return visibility;
 }
 
 ComparisonMask comparison_mask(Context& context, const Frame& frame) {
     frame.validate();
     Progress silent;
-    const std::shared_ptr<FrameReceivers> receivers = context.impl().receiver_points(frame, silent);
-    ComparisonMask mask{Image(frame.size, 1), Image(frame.size, 1)};
+    Context::Impl& impl = context.impl();
+    const std::shared_ptr<FrameReceivers> receivers = impl.receiver_points(frame, silent);
+    ComparisonMask mask{Image(frame.size, 1), Image(frame.size, 1),
+                        make_edge_probe(impl.tracer(frame.scene, frame.ignore_alpha, silent),
+                                        receivers->points, frame.light)};
     for (std::size_t i = 0; i < receivers->points.size(); ++i) {
         const trace::Receiver& receiver = receivers->points[i];
         if (!receiver.exists()) continue;
@@ -83,8 +88,13 @@ ComparisonMask comparison_mask(Context& context, const Frame& frame) {
 
 Comparison compare(const Visibility& visibility, const Visibility& truth,
                    const ComparisonMask& mask) {
-    return compare(visibility.image(), truth.image(), mask, visibility.texel_size_m(),
-                   visibility.filter_radius_texels(), visibility.texel_slant_px());
+    const Image& texel_size_m = visibility.texel_size_m();
+    if (visibility.impl().has_texels_across_light()) {
+        return compare(visibility.image(), truth.image(), mask, texel_size_m,
+                       visibility.filter_radius_texels());
+    }
+    return compare(visibility.image(), truth.image(), {mask.facing, mask.pixel_size_m, nullptr},
+                   texel_size_m, visibility.filter_radius_texels());
 }
 
 }  // namespace gnomon

@@ -127,10 +127,9 @@ protected:
     static Pictures both(const Frame& frame) {
         Progress silent;
         const std::shared_ptr<FrameReceivers> receivers = context().impl().receivers(frame);
-        const trace::Tracer& tracer =
-            context().impl().tracer(frame.scene, frame.ignore_alpha, silent);
+        const auto tracer = context().impl().tracer(frame.scene, frame.ignore_alpha, silent);
         return {frame, raster::read_back(context().impl().device(), receivers->device),
-                tracer.visible_surfaces(frame.camera, frame.size, silent)};
+                tracer->visible_surfaces(frame.camera, frame.size, silent)};
     }
 
     /// All differences are explained, and they are few: of the pixels that an edge crosses, up to a
@@ -163,7 +162,7 @@ protected:
             context()
                 .impl()
                 .tracer(frame.scene, frame.ignore_alpha, silent)
-                .receivers(frame.camera, frame.size, pictures.traced);
+                ->receivers(frame.camera, frame.size, pictures.traced);
         for (std::size_t i = 0; i < points.size(); ++i) {
             const trace::Receiver& point = points[i];
             if (!point.exists() || pictures.drawn_id(i) != point.id) continue;

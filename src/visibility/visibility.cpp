@@ -1,10 +1,6 @@
 #include "base/check.h"
-#include "visibility/light_shape.h"
 #include "visibility/visibility_impl.h"
 
-#include <glm/ext/matrix_double4x4.hpp>
-
-#include <algorithm>
 #include <cstring>
 
 namespace gnomon {
@@ -12,30 +8,6 @@ namespace gnomon {
 namespace {
 
 constexpr unsigned kMaxFrameSide = 16384;
-
-/// Planes that the light meets at more than 89° are taken to be at 89°.
-constexpr double kMaxSlant = 50.0;
-
-/// What is a metre long in the plane of light and normal, across the light, as the light casts it
-/// on a plane. Zero where the light falls along the normal, or on the back.
-DVec3 slant(Vec3 normal_ws, Vec3 to_light_ws) {
-    const DVec3 normal(normal_ws);
-    const DVec3 to_light = glm::normalize(DVec3(to_light_ws));
-    const double cosine = glm::dot(normal, to_light);
-    const DVec3 along = to_light - cosine * normal;
-    const double sine = glm::length(along);
-    if (!(cosine > 0.0) || !(sine > 0.0)) return DVec3(0.0);
-    return along / sine * std::min(1.0 / cosine, kMaxSlant);
-}
-
-/// By how many pixels the picture of a small step from a point is long.
-glm::dvec2 projected_px(const glm::dmat4& clip_from_world, Extent size, const DVec3& p_ws,
-                        const DVec3& step_ws) {
-    const glm::dvec4 at = clip_from_world * glm::dvec4(p_ws, 1.0);
-    const glm::dvec4 step = clip_from_world * glm::dvec4(step_ws, 0.0);
-    const glm::dvec2 ndc = (glm::dvec2(step) - glm::dvec2(at) / at.w * step.w) / at.w;
-    return 0.5 * ndc * glm::dvec2(size.width, size.height);
-}
 
 std::uint64_t byte_count(Extent size) {
     return std::uint64_t{size.width} * size.height * sizeof(float);
@@ -67,9 +39,6 @@ const Image& Visibility::image() const {
 const Image& Visibility::texel_size_m() const {
     return impl_->texel_size_m();
 }
-const Image& Visibility::texel_slant_px() const {
-    return impl_->texel_slant_px();
-}
 float Visibility::filter_radius_texels() const {
     return impl_->filter_radius_texels();
 }
@@ -83,7 +52,6 @@ void Visibility::Impl::reset(Context::Impl& context, Extent size) {
     filter_radius_texels_ = 0.0f;
     frame_.reset();
     texel_image_ = {};
-    texel_slant_ = {};
 }
 
 gpu::Image& Visibility::Impl::device_target(Context::Impl& context, Extent size) {
@@ -168,45 +136,17 @@ void Visibility::Impl::set_texels(Image texel_size_m, float filter_radius_texels
 }
 
 const Image& Visibility::Impl::texel_size_m() {
-    make_texel_images();
-    return texel_image_;
-}
-
-const Image& Visibility::Impl::texel_slant_px() {
-    make_texel_images();
-    return texel_slant_;
-}
-
-void Visibility::Impl::make_texel_images() {
-    if (!(texel_size_ || texel_size_on_) || !texel_image_.empty()) return;
+    if (!(texel_size_ || texel_size_on_) || !texel_image_.empty()) return texel_image_;
     Progress silent;
     const std::shared_ptr<FrameReceivers> receivers = context_->receiver_points(*frame_, silent);
-    if (texel_size_on_) {
-        texel_image_ = Image(size_, 1);
-        for (std::size_t i = 0; i < receivers->points.size(); ++i) {
-            const trace::Receiver& receiver = receivers->points[i];
-            if (receiver.exists()) texel_image_.pixels()[i] = texel_size_on_(receiver);
-        }
-        return;
-    }
-    const glm::dmat4 clip_from_world(frame_->camera.clip_from_world(size_));
-    const shared::LightShape light = light_shape(frame_->light);
     texel_image_ = Image(size_, 1);
-    texel_slant_ = Image(size_, 2);
     for (std::size_t i = 0; i < receivers->points.size(); ++i) {
         const trace::Receiver& receiver = receivers->points[i];
         if (!receiver.exists()) continue;
-        const float texel_m = texel_size_(receiver.position_ws);
-        texel_image_.pixels()[i] = texel_m;
-        const Vec3 to_light = light.kind == shared::kLightDirectional
-                                  ? light.position
-                                  : light.position - receiver.position_ws;
-        const glm::dvec2 slant_px =
-            projected_px(clip_from_world, size_, DVec3(receiver.position_ws),
-                         static_cast<double>(texel_m) * slant(receiver.normal_ws, to_light));
-        texel_slant_.pixels()[2 * i] = static_cast<float>(slant_px.x);
-        texel_slant_.pixels()[2 * i + 1] = static_cast<float>(slant_px.y);
+        texel_image_.pixels()[i] =
+            texel_size_on_ ? texel_size_on_(receiver) : texel_size_(receiver.position_ws);
     }
+    return texel_image_;
 }
 
 }  // namespace gnomon

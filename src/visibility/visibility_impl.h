@@ -36,13 +36,12 @@ public:
     void set_texels(Image texel_size_m, float filter_radius_texels);
     /// Made from the receivers at the first call, unless it was given.
     const Image& texel_size_m();
-    const Image& texel_slant_px();
+    bool has_texels_across_light() const { return texel_size_ != nullptr; }
     float filter_radius_texels() const { return filter_radius_texels_; }
 
 private:
     void reset(Context::Impl& context, Extent size);
     void allocate_on_device();
-    void make_texel_images();
 
     Context::Impl* context_ = nullptr;
     Extent size_;
@@ -53,7 +52,7 @@ private:
     TexelSizeOn texel_size_on_;
     float filter_radius_texels_ = 0.0f;
     std::optional<Frame> frame_;
-    Image texel_image_, texel_slant_;
+    Image texel_image_;
 };
 
 }  // namespace gnomon

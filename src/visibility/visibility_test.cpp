@@ -96,30 +96,22 @@ TEST_F(VisibilityTest, KnowsTheTexelsOfWhatWasRenderedLast) {
     EXPECT_EQ(visibility.filter_radius_texels(), 0.0f);
 }
 
-TEST_F(VisibilityTest, TexelsAreLongerWhereTheLightIsAslant) {
-    Frame frame = wall_frame();
-    const float aside_rad = radians(60.0f);
-    frame.light = DirectionalLight{.to_light_ws = {std::sin(aside_rad), 0, std::cos(aside_rad)}};
-    constexpr float kTexel_m = 0.25f;
+TEST_F(VisibilityTest, KnowsWhetherTexelsLieAcrossTheLight) {
+    const Frame frame = wall_frame();
     Visibility visibility;
     visibility.impl().host_target(impl(), frame.size);
-    visibility.impl().set_texels([](Vec3) { return kTexel_m; }, 2.0f, frame);
-    const float pixel_m = 10.0f * std::tan(radians(30.0f)) / 32.0f;
-    const Image& slant_px = visibility.texel_slant_px();
-    ASSERT_EQ(slant_px.size(), frame.size);
-    EXPECT_NEAR(slant_px.at(20, 7, 0), kTexel_m / std::cos(aside_rad) / pixel_m, 1e-4f);
-    EXPECT_NEAR(slant_px.at(20, 7, 1), 0.0f, 1e-4f);
+    visibility.impl().set_texels([](Vec3) { return 0.25f; }, 2.0f, frame);
+    EXPECT_TRUE(visibility.impl().has_texels_across_light());
 
-    // Texels of the receivers themselves are as long as they are.
     visibility.impl().host_target(impl(), frame.size);
     visibility.impl().set_texels(
         [](const trace::Receiver& receiver) { return 5.0f + receiver.normal_ws.z; }, 2.0f, frame);
     EXPECT_EQ(visibility.texel_size_m().at(20, 7), 6.0f);
-    EXPECT_TRUE(visibility.texel_slant_px().empty());
+    EXPECT_FALSE(visibility.impl().has_texels_across_light());
     visibility.impl().host_target(impl(), frame.size);
-    visibility.impl().set_texels(Image(frame.size, 1, kTexel_m), 2.0f);
+    visibility.impl().set_texels(Image(frame.size, 1, 0.25f), 2.0f);
     EXPECT_FALSE(visibility.texel_size_m().empty());
-    EXPECT_TRUE(visibility.texel_slant_px().empty());
+    EXPECT_FALSE(visibility.impl().has_texels_across_light());
 }
 
 class ContextCacheTest : public VisibilityTest {};

@@ -42,8 +42,8 @@ private:
                  std::span<float> out, Progress& progress) override {
         context()
             .tracer(frame.scene, frame.ignore_alpha, progress)
-            .visibility(receivers, frame.size, frame.light, options_.samples,
-                        static_cast<unsigned>(options_.seed), out, progress);
+            ->visibility(receivers, frame.size, frame.light, options_.samples,
+                         static_cast<unsigned>(options_.seed), out, progress);
     }
 
     std::uint64_t memory_bytes() const override { return 0; }

@@ -67,7 +67,9 @@ private:
 
     void compute(const Frame& frame, std::span<const trace::Receiver> receivers,
                  std::span<float> out, Progress& progress) override {
-        const trace::Tracer& tracer = context().tracer(frame.scene, frame.ignore_alpha, progress);
+        const std::shared_ptr<const trace::Tracer> kept =
+            context().tracer(frame.scene, frame.ignore_alpha, progress);
+        const trace::Tracer& tracer = *kept;
         if (!baked_ || baked_->ignore_alpha != frame.ignore_alpha ||
             !vertex_occlusion::same_place(baked_->light, frame.light)) {
             baked_.reset();  // first, so that two bakes never are in memory at once
