@@ -3,7 +3,8 @@
 //
 //     bias_sweep [TECHNIQUE [SCENE...]]
 //
-// Without arguments all such techniques, on the built-in scenes that have a sun. Suns of five
+// Without arguments all such techniques, on the built-in scenes that have a sun. Others are named
+// by their files, FILE.obj:z for those whose Z points up. Suns of five
 // elevations (5 to 85 degrees) and four azimuths, 640x360, maps of 1024 and of 2048 texels. Prints
 // the mean RMSE to the sun's disc and, for each elevation, the worst artefact_lit and
 // artefact_shadow over all scenes and azimuths, in millionths, and where the worst of all was. The
@@ -21,9 +22,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gnomon {
@@ -138,6 +141,17 @@ void print_worst(std::span<const Worst> worst) {
     fmt::print(" {:20}", std::ranges::max(worst, {}, &Worst::value).where);
 }
 
+/// A scene by its name or file, and whether that ends in ":z".
+Scene named_scene(std::string name) {
+    constexpr std::string_view kZUp = ":z";
+    LoadOptions options;
+    if (name.ends_with(kZUp)) {
+        options.up = UpAxis::z;
+        name.resize(name.size() - kZUp.size());
+    }
+    return load_scene(name, options);
+}
+
 int run(int argc, char** argv) {
     Context context;
     std::vector<Contestant> all = contestants(context, argc > 1 ? argv[1] : "");
@@ -151,9 +165,9 @@ int run(int argc, char** argv) {
             scenes.emplace_back(info.name);
     }
     for (const std::string& name : scenes) {
-        const Scene scene = load_scene(name);
+        const Scene scene = named_scene(name);
         if (std::holds_alternative<DirectionalLight>(scene.lights().at(0))) {
-            judge(context, scene, name, all);
+            judge(context, scene, std::filesystem::path(name).filename().string(), all);
         }
     }
     for (const Contestant& c : all) {

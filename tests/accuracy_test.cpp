@@ -1,5 +1,6 @@
-// How near the techniques come to the ground truth on the built-in scenes, asserted by numbers. On
-// failure the difference is left as a picture in the build folder.
+// How near the techniques come to the ground truth on the built-in scenes, and on larger ones where
+// they are, asserted by numbers. On failure the difference is left as a picture in the build
+// folder.
 
 #include "harness.h"
 
@@ -8,6 +9,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -118,13 +121,9 @@ TEST_P(BuiltinScene, ShadowMapHasNoArtefactsAtDefaults) {
     if (HasFailure()) leave_picture(judged, fmt::format("map_{}", GetParam()));
 }
 
-// A part of bench/bias_sweep: what it prints for all suns and filters, at one azimuth, by default
-// and with the filter that knows how wide the sun is. The other is judged by a sun without width.
-TEST_P(BuiltinScene, SplitsHaveNoArtefactsUnderOtherSuns) {
-    const Scene scene = make_builtin_scene(GetParam());
-    if (!std::holds_alternative<DirectionalLight>(scene.lights().at(0))) {
-        GTEST_SKIP() << GetParam() << " has no sun";
-    }
+/// A part of bench/bias_sweep: what it prints for all suns and filters, at one azimuth, by default
+/// and with the filter that knows how wide the sun is. The other is judged by a sun without width.
+void expect_no_artefacts_of_splits(const Scene& scene, const std::string& name) {
     for (const float elevation_deg : {5.0f, 15.0f, 35.0f, 60.0f, 85.0f}) {
         for (const std::string filter : {"box_3x3", "pcss"}) {
             const Light light = sun(radians(elevation_deg), radians(120.0f));
@@ -134,9 +133,18 @@ TEST_P(BuiltinScene, SplitsHaveNoArtefactsUnderOtherSuns) {
             EXPECT_LE(judged.error.artefact_shadow, 0.0003) << filter << " at " << elevation_deg;
             EXPECT_LE(judged.error.artefact_lit, 0.001) << filter << " at " << elevation_deg;
             EXPECT_GT(judged.error.rmse, 0.0) << filter << " at " << elevation_deg;
-            if (HasFailure()) leave_picture(judged, fmt::format("pssm_{}_{}", filter, GetParam()));
+            if (testing::Test::HasFailure())
+                leave_picture(judged, fmt::format("pssm_{}_{}", filter, name));
         }
     }
+}
+
+TEST_P(BuiltinScene, SplitsHaveNoArtefactsUnderOtherSuns) {
+    const Scene scene = make_builtin_scene(GetParam());
+    if (!std::holds_alternative<DirectionalLight>(scene.lights().at(0))) {
+        GTEST_SKIP() << GetParam() << " has no sun";
+    }
+    expect_no_artefacts_of_splits(scene, GetParam());
 }
 
 // Lamps: a cube, a tetrahedron, perspective cubes, and two paraboloids.
@@ -206,6 +214,37 @@ std::string test_name(const testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScene, testing::ValuesIn(builtin_names()), test_name);
+
+/// Of the folder of larger scenes.
+struct SceneFile {
+    std::string label, path;
+    UpAxis up = UpAxis::y;
+};
+
+std::ostream& operator<<(std::ostream& out, const SceneFile& file) {
+    return out << file.path;
+}
+
+class LargerScene : public DeviceTest, public testing::WithParamInterface<SceneFile> {};
+
+TEST_P(LargerScene, SplitsHaveNoArtefacts) {
+    const char* const folder = std::getenv("GNOMON_SCENES");
+    if (folder == nullptr) GTEST_SKIP() << "GNOMON_SCENES is not set";
+    const auto file = std::filesystem::path(folder) / GetParam().path;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    const Scene scene = load_scene(file.string(), {.up = GetParam().up});
+    expect_no_artefacts_of_splits(scene, GetParam().label);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LargerScene,
+                         testing::Values(SceneFile{"terrain", "low-poly-terrain/terrain.glb"},
+                                         SceneFile{"city_block", "delft-city-block/testarea.obj",
+                                                   UpAxis::z},
+                                         SceneFile{"game_map", "zdm2-game-map/zdm2.obj"},
+                                         SceneFile{"voxel_castle", "lost-empire/lost_empire.obj"},
+                                         SceneFile{"pine", "scrub-pine/scrubPine.obj"},
+                                         SceneFile{"ship", "dutch-ship/dutch_ship_medium_1k.gltf"}),
+                         [](const auto& test) { return test.param.label; });
 
 }  // namespace
 }  // namespace gnomon::test
