@@ -1,16 +1,16 @@
 // What the biases that nobody set do: artefacts of every technique with a depth map, at its
 // defaults, with every filter and every content, over suns and scenes.
 //
-//     bias_sweep [TECHNIQUE [SCENE...]]
+//     bias_sweep [TECHNIQUE[/FILTER,...] [SCENE...]]
 //
-// Without arguments all such techniques, on the built-in scenes that have a sun. Others are named
-// by their files, FILE.obj:z for those whose Z points up. Suns of five
-// elevations (5 to 85 degrees) and four azimuths, 640x360, maps of 1024 and of 2048 texels. Prints
-// the mean RMSE to the sun's disc and, for each elevation, the worst artefact_lit and
-// artefact_shadow over all scenes and azimuths, in millionths, and where the worst of all was. The
-// aim is at most 1000 and 300. What no bias mends is left out of them: filters that do not know how
-// wide the sun is are judged by a sun without width, since where most of its disc is hidden, but
-// not its middle, they are lit. The last figures are theirs by the disc.
+// Without arguments all such techniques, on the built-in scenes that have a sun; with filters or
+// contents, those alone. Other scenes are named by their files, FILE.obj:z for those whose Z points
+// up. Suns of five elevations (5 to 85 degrees) and four azimuths, 640x360, maps of 1024 and of
+// 2048 texels. Prints the mean RMSE to the sun's disc and, for each elevation, the worst
+// artefact_lit and artefact_shadow over all scenes and azimuths, in millionths, and where the worst
+// of all was. The aim is at most 1000 and 300. What no bias mends is left out of them: filters that
+// do not know how wide the sun is are judged by a sun without width, since where most of its disc
+// is hidden, but not its middle, they are lit. The last figures are theirs by the disc.
 
 #include <gnomon/error.h>
 #include <gnomon/gnomon.h>
@@ -76,16 +76,21 @@ struct Judge {
     }
 };
 
+/// `only` is TECHNIQUE[/READING,...] or empty for all.
 std::vector<Contestant> contestants(Context& context, const std::string& only) {
     std::vector<Contestant> result;
+    const std::string technique = only.substr(0, only.find('/'));
+    const std::string readings =
+        technique.size() < only.size() ? "," + only.substr(technique.size() + 1) + "," : "";
     for (const TechniqueInfo& info : techniques()) {
-        if (!only.empty() && info.name != only) continue;
+        if (!technique.empty() && info.name != technique) continue;
         const std::vector<ParamInfo>& params = info.params();
         const auto filter = std::ranges::find(params, "filter", &ParamInfo::name);
         const bool has_map =
             std::ranges::find(params, "map_size", &ParamInfo::name) != params.end();
         if (filter == params.end() || !has_map) continue;
         const auto add = [&](const std::string& param, const std::string& word) {
+            if (!readings.empty() && readings.find("," + word + ",") == std::string::npos) return;
             for (const int map_size : kMapSizes) {
                 Contestant contestant;
                 contestant.technique = info.name;
@@ -156,7 +161,9 @@ int run(int argc, char** argv) {
     Context context;
     std::vector<Contestant> all = contestants(context, argc > 1 ? argv[1] : "");
     if (all.empty()) {
-        fmt::print(stderr, "error: \"{}\" is no technique with a depth map\n", argv[1]);
+        fmt::print(stderr,
+                   "error: \"{}\" is no technique with a depth map, or none of its filters\n",
+                   argv[1]);
         return 2;
     }
     std::vector<std::string> scenes(argv + std::min(argc, 2), argv + argc);
