@@ -172,11 +172,7 @@ TEST_P(Contract, ShadowsAreWhereTheTruthHasThem) {
                 compare(technique->render(frame), truth, comparison_mask(context(), frame));
             EXPECT_GT(error.pixels, 1000u);
             EXPECT_EQ(error.artefact_lit, 0.0);
-            // Known failure: the one pixel at the very foot of the box, as degenerate_test tells.
-            const std::size_t at_creases =
-                info().name == "omni" || info().name == "dual_paraboloid" ? 1 : 0;
-            EXPECT_LE(error.artefact_shadow * static_cast<double>(error.pixels),
-                      static_cast<double>(at_creases) + 0.5);
+            EXPECT_EQ(error.artefact_shadow, 0.0);
         }
     }
 }
