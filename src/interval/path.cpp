@@ -15,6 +15,9 @@ namespace gnomon::interval {
 
 namespace {
 
+/// Floats of the widest register.
+constexpr std::size_t kPadding = 16;
+
 bool is_direction(DVec3 v) {
     const double length2 = glm::dot(v, v);
     return std::isfinite(length2) && length2 > 0.0;
@@ -96,6 +99,8 @@ DayPath::DayPath(std::span<const DVec3> to_sun_ws, const Frame& frame) : frame_(
         for (int axis = 0; axis < 3; ++axis)
             coordinates_[axis].push_back(static_cast<float>(d[axis]));
     }
+    for (std::vector<float>& coordinates : coordinates_)
+        coordinates.resize(coordinates.size() + kPadding, 0.0f);
     fit_steps(unwrapped_azimuths(in_frame), fit_);
 }
 

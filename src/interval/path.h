@@ -38,7 +38,8 @@ public:
     const Frame& frame() const { return frame_; }
     std::span<const DVec3> to_sun_ws() const { return to_sun_ws_; }
 
-    /// The directions in the frame, rounded to float, coordinate by coordinate.
+    /// The directions in the frame, rounded to float, coordinate by coordinate; there is room for
+    /// any register at the last.
     const float* coordinates(int axis) const { return coordinates_[axis].data(); }
 
     /// Step = steps_per_rad * azimuth + step_at_zero, but for `slack_steps` at most; the azimuth

@@ -56,6 +56,13 @@ template <int kCount>
 HWY_INLINE Vec3f load3(const float (&lanes)[3][kCount], int first) {
     return {load(lanes[0] + first), load(lanes[1] + first), load(lanes[2] + first)};
 }
+HWY_INLINE Vec3f negated_where(Vec3f v, Vf signs) {
+    return {hn::Xor(v.x, signs), hn::Xor(v.y, signs), hn::Xor(v.z, signs)};
+}
+HWY_INLINE Vec3f chosen(Lanes lanes, Vec3f yes, Vec3f no) {
+    return {hn::IfThenElse(lanes, yes.x, no.x), hn::IfThenElse(lanes, yes.y, no.y),
+            hn::IfThenElse(lanes, yes.z, no.z)};
+}
 HWY_INLINE Vec3f operator-(Vec3f a, Vec3f b) {
     return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }

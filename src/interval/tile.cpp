@@ -27,6 +27,9 @@ constexpr double kPlane = 1e-4;
 /// The axes are a little longer than the tile, so that no s or t is rounded to more than 1.
 constexpr double kLonger = 1.0 + 1e-5;
 
+/// The normal is a unit vector and at right angles to the axes to kPlane.
+constexpr double kFrameError = 1.0 + 10.0 * kPlane;
+
 /// atan2 of ranges.inl.h, with the roundings of its argument.
 constexpr double kAtanError_rad = 4e-6;
 /// Roundings of a step's number, relative to the greatest number in its computation.
@@ -81,8 +84,10 @@ struct Rectangle {
     DVec3 center, half_u, half_v;
 };
 
-/// With a side along `u`, a unit vector in the plane of the receivers.
+/// With a side along `u`, a unit vector in the plane of the receivers. No side is much shorter than
+/// the other: lines of receivers have coordinates, too.
 Rectangle rectangle_along(std::span<const DVec3> origins, DVec3 normal, DVec3 u) {
+    constexpr double kLeastSide = 1.0 / 16.0;
     const DVec3 v = glm::cross(normal, u);
     double low_u = 0.0, high_u = 0.0, low_v = 0.0, high_v = 0.0;
     for (const DVec3& origin : origins) {
@@ -93,16 +98,25 @@ Rectangle rectangle_along(std::span<const DVec3> origins, DVec3 normal, DVec3 u)
         low_v = std::min(low_v, along_v);
         high_v = std::max(high_v, along_v);
     }
+    const double length_u = high_u - low_u, length_v = high_v - low_v;
     return {origins[0] + 0.5 * (low_u + high_u) * u + 0.5 * (low_v + high_v) * v,
-            0.5 * kLonger * (high_u - low_u) * u, 0.5 * kLonger * (high_v - low_v) * v};
+            0.5 * kLonger * std::max(length_u, kLeastSide * length_v) * u,
+            0.5 * kLonger * std::max(length_v, kLeastSide * length_u) * v};
 }
 
 /// The smaller one of two: along the way from the first receiver to the next, which fits rows of
 /// texels; and along that to the farthest, a diagonal of a square of texels, which fits lines.
+/// Receivers at one place have a little one.
 Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
+    constexpr double kLeastHalf_m = 1e-3;
     const auto far_from_first = [&](DVec3 p) { return glm::dot(p - origins[0], p - origins[0]); };
     const DVec3 farthest = *std::ranges::max_element(origins, {}, far_from_first);
-    if (!(far_from_first(farthest) > 0.0)) return {origins[0], DVec3(0.0), DVec3(0.0)};
+    if (!(far_from_first(farthest) > 0.0)) {
+        const DVec3 any =
+            std::abs(normal.x) < std::abs(normal.y) ? DVec3(1.0, 0.0, 0.0) : DVec3(0.0, 1.0, 0.0);
+        const DVec3 u = glm::normalize(glm::cross(normal, any));
+        return {origins[0], kLeastHalf_m * u, kLeastHalf_m * glm::cross(normal, u)};
+    }
     const auto towards = [&](DVec3 p) {
         return rectangle_along(origins, normal, glm::normalize(p - origins[0]));
     };
@@ -115,9 +129,10 @@ Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
     return area2(row) < area2(diagonal) ? row : diagonal;
 }
 
-float coordinate_along(DVec3 offset, DVec3 axis) {
+/// Along `axis` from 0 to 1; nowhere without one.
+DVec3 gradient_along(DVec3 axis) {
     const double length2 = glm::dot(axis, axis);
-    return length2 > 0.0 ? static_cast<float>(glm::dot(offset, axis) / length2) : 0.0f;
+    return length2 > 0.0 ? axis / length2 : DVec3(0.0);
 }
 
 /// Sets what Tile::touch_m promises, and what height_over_tile() needs. No origin is farther than
@@ -147,28 +162,42 @@ void set_heights(Tile& tile, const Tree& tree, std::span<const Receiver> receive
                    2.0 * kUnitRoundoff * sum_of_magnitudes(loaded(tile.center_m))));
 }
 
-/// False when the receivers are not in one plane.
-bool set_tile(Tile& tile, const Tree& tree, std::span<const Receiver> receivers) {
-    std::array<DVec3, kMaxTexels> lanes;
-    const std::span<DVec3> origins(lanes.data(), receivers.size());
-    std::ranges::transform(receivers, origins.begin(), [&](const Receiver& receiver) {
-        return tree.from_world(DVec3(trace::lifted_position_ws(receiver)));
-    });
-    const DVec3 normal = tree.frame().from_world(DVec3(receivers[0].normal_ws));
-    const Rectangle around = rectangle_around(origins, normal);
+/// The axes of the tile; a single receiver has none.
+void set_frame(Tile& tile, std::span<const DVec3> origins, DVec3 normal) {
+    const Rectangle around = origins.size() > 1 ? rectangle_around(origins, normal)
+                                                : Rectangle{origins[0], DVec3(0.0), DVec3(0.0)};
     store(tile.center_m, around.center);
     store(tile.u_axis_m, around.half_u);
     store(tile.v_axis_m, around.half_v);
     store(tile.normal, normal);
+    const DVec3 along_s = gradient_along(around.half_u), along_t = gradient_along(around.half_v);
+    store(tile.s_per_m, along_s);
+    store(tile.t_per_m, along_t);
+    const double s_per_m = glm::length(along_s), t_per_m = glm::length(along_t);
+    tile.per_m = static_cast<float>(kFrameError * std::max(s_per_m, t_per_m));
+    tile.per_m2 = static_cast<float>(kFrameError * s_per_m * t_per_m);
+    tile.size_m = static_cast<float>(
+        kLonger * (sum_of_magnitudes(around.half_u) + sum_of_magnitudes(around.half_v)));
+}
+
+/// Sets the origins of their rays as well. False when the receivers are not in one plane.
+bool set_tile(Tile& tile, std::span<DVec3> origins, const Tree& tree,
+              std::span<const Receiver> receivers) {
+    std::ranges::transform(receivers, origins.begin(), [&](const Receiver& receiver) {
+        return tree.from_world(DVec3(trace::lifted_position_ws(receiver)));
+    });
+    const DVec3 normal = tree.frame().from_world(DVec3(receivers[0].normal_ws));
+    set_frame(tile, origins, normal);
     const DVec3 u = loaded(tile.u_axis_m), v = loaded(tile.v_axis_m);
+    const DVec3 along_s = loaded(tile.s_per_m), along_t = loaded(tile.t_per_m);
     std::ranges::fill(tile.s, 0.0f);
     std::ranges::fill(tile.t, 0.0f);
     DVec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
     double residual_m = 0.0, height_m = 0.0;
     for (std::size_t i = 0; i < origins.size(); ++i) {
         const DVec3 offset = origins[i] - loaded(tile.center_m);
-        tile.s[i] = coordinate_along(offset, u);
-        tile.t[i] = coordinate_along(offset, v);
+        tile.s[i] = static_cast<float>(glm::dot(offset, along_s));
+        tile.t[i] = static_cast<float>(glm::dot(offset, along_t));
         const DVec3 rest = offset - double{tile.s[i]} * u - double{tile.t[i]} * v;
         residual_m = std::max(residual_m, sum_of_magnitudes(rest));
         height_m = std::max(height_m, std::abs(glm::dot(normal, offset)));
@@ -183,7 +212,7 @@ bool set_tile(Tile& tile, const Tree& tree, std::span<const Receiver> receivers)
     if (std::max(residual_m, height_m) > plane_m) return false;
     tile.receivers = receivers.data();
     tile.texels = static_cast<int>(receivers.size());
-    tile.residual_m = static_cast<float>(kLonger * residual_m);
+    tile.residual_m = static_cast<float>(kLonger * std::max(residual_m, height_m));
     store(tile.lower_m, lower - 2.0 * rounding_m);
     store(tile.upper_m, upper + 2.0 * rounding_m);
     set_heights(tile, tree, receivers, height_m);
@@ -218,9 +247,7 @@ void gather_hints(Walk& walk) {
     LeafIds ids;
     for (std::size_t i = 0; i < count; ++i) {
         const Culprit& culprit = culprits[i];
-        const Leaf& from = culprit.leaf == kHintLeaf
-                               ? walk.hint_leaf
-                               : walk.tree->leaves()[static_cast<std::size_t>(culprit.leaf)];
+        const Leaf& from = walk.leaf_of(culprit.leaf);
         const auto lane = static_cast<std::size_t>(culprit.lane);
         for (int axis = 0; axis < 3; ++axis) {
             leaf.corner[axis][i] = from.corner[axis][lane];
@@ -233,6 +260,49 @@ void gather_hints(Walk& walk) {
     walk.hint_ids = ids;
     walk.culprit_count = 0;
 }
+
+enum class Meeting { none, inside, near_an_edge };
+
+/// A triangle as the leaf has it, rounded: but for its edges it tells in double what the scene's
+/// tells, which is seldom in a cache.
+class LeafTriangle {
+public:
+    LeafTriangle(const Tree& tree, const Leaf& leaf, int lane) {
+        for (int axis = 0; axis < 3; ++axis) {
+            corner_[axis] = double{leaf.corner[axis][lane]};
+            edge1_[axis] = double{leaf.edge1[axis][lane]};
+            edge2_[axis] = double{leaf.edge2[axis][lane]};
+        }
+        corner_error_m_ =
+            kUnitRoundoff * sum_of_magnitudes(corner_) +
+            kDoubleRoundings * std::numeric_limits<double>::epsilon() * tree.magnitude_m();
+    }
+
+    /// Of the triangle with a ray; what is inside is in front of it, if it surely is either in
+    /// front or behind.
+    Meeting meeting(DVec3 origin, DVec3 sun) const {
+        const DVec3 offset = corner_ - origin;
+        const double u = glm::dot(sun, glm::cross(offset, edge2_));
+        const double v = glm::dot(sun, glm::cross(edge1_, offset));
+        const DVec3 normal = glm::cross(edge1_, edge2_);
+        const double determinant = -glm::dot(sun, normal), w = determinant - u - v;
+        const double size1 = sum_of_magnitudes(edge1_), size2 = sum_of_magnitudes(edge2_);
+        const double place_m = corner_error_m_ + kUnitRoundoff * sum_of_magnitudes(offset);
+        const double error =
+            kLonger * ((size1 + size2) * place_m + 2.0 * kUnitRoundoff * size1 * size2);
+        const double least = std::min({u, v, w}), greatest = std::max({u, v, w});
+        if (least < -error && greatest > error) return Meeting::none;
+        const bool is_sure = least > error || greatest < -error;
+        const bool is_in_front = determinant * glm::dot(offset, normal) < 0.0;
+        return is_sure && is_in_front ? Meeting::inside : Meeting::near_an_edge;
+    }
+
+private:
+    static constexpr double kDoubleRoundings = 64.0;
+
+    DVec3 corner_, edge1_, edge2_;
+    double corner_error_m_;
+};
 
 /// In so many seconds; 0 = none.
 void set_deadline(Walk& walk, double most_s) {
@@ -274,13 +344,18 @@ bool is_late(const Walk& walk) {
 }
 
 std::uint64_t blocked_texels(const Walk& walk, std::uint64_t texels, int step, std::int32_t leaf,
-                             int lane) {
+                             int lane, bool is_in_front) {
     const trace::SurfaceId id = walk.surface(leaf, lane);
     const DVec3 to_sun = walk.path->to_sun_ws()[static_cast<std::size_t>(step)];
+    const DVec3 sun = walk.path->frame().from_world(to_sun);
+    const LeafTriangle rounded(*walk.tree, walk.leaf_of(leaf), lane);
     std::uint64_t blocked = 0;
     for (; texels != 0; texels &= texels - 1) {
         const int texel = std::countr_zero(texels);
-        if (blocks(walk.tree->scene(), walk.tree->ignores_alpha(), id, walk.tile.receivers[texel],
+        const Meeting meeting = rounded.meeting(walk.origins[texel], sun);
+        if (meeting == Meeting::none) continue;
+        if ((meeting == Meeting::inside && is_in_front) ||
+            blocks(walk.tree->scene(), walk.tree->ignores_alpha(), id, walk.tile.receivers[texel],
                    to_sun)) {
             blocked |= std::uint64_t{1} << texel;
         }
@@ -363,7 +438,8 @@ bool TileTracer::trace_tile(std::span<const Receiver> receivers, std::span<std::
             masks[i] = i % words + 1 == words ? last : ~std::uint64_t{0};
         return true;
     }
-    if (!set_tile(walk.tile, *walk.tree, receivers)) {
+    const std::span<DVec3> origins(walk.origins, receivers.size());
+    if (!set_tile(walk.tile, origins, *walk.tree, receivers)) {
         const std::size_t half = receivers.size() / 2;
         return trace_tile(receivers.first(half), masks.first(half * words)) &&
                trace_tile(receivers.subspan(half), masks.subspan(half * words));

@@ -154,10 +154,32 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
     return true;
 }
 
+/// The slants of the sun over the tile. Where it is so low that float hardly tells its height, this
+/// is set to a little, and its direction errs by that as well.
+HWY_INLINE void set_slants(Walk& walk) {
+    constexpr float kLeastHeight = 1e-6f, kMoreError = 4.0f;
+    const Vec3f along_s = splat3(walk.tile.s_per_m), along_t = splat3(walk.tile.t_per_m);
+    const Vec3f normal = splat3(walk.tile.normal);
+    for (int first = 0; first < walk.steps; first += kLanes) {
+        const Vec3f sun{hn::LoadU(Floats(), walk.sun[0] + first),
+                        hn::LoadU(Floats(), walk.sun[1] + first),
+                        hn::LoadU(Floats(), walk.sun[2] + first)};
+        const Vf height = dot(normal, sun), least = splat(kLeastHeight);
+        const Vf stretch = hn::Div(splat(1.0f), hn::Max(height, least));
+        hn::Store(hn::Mul(dot(along_s, sun), stretch), Floats(), walk.slant_s + first);
+        hn::Store(hn::Mul(dot(along_t, sun), stretch), Floats(), walk.slant_t + first);
+        const Vf error = hn::IfThenElse(hn::Gt(height, least), splat(1.0f), splat(kMoreError));
+        hn::Store(hn::Mul(stretch, error), Floats(), walk.stretch + first);
+    }
+}
+
 bool walk_tree(Walk& walk) {
-    walk.leaf_count = walk.pairs.count = walk.mixed_pairs.count = 0;
-    set_strips(walk.tile);
-    return walk.tile.texels == 1 ? walk_nodes<true>(walk) : walk_nodes<false>(walk);
+    walk.leaf_count = 0;
+    for (Pairs* pairs : {&walk.pairs, &walk.mixed_pairs})
+        pairs->records = 0;
+    if (walk.tile.texels == 1) return walk_nodes<true>(walk);
+    set_slants(walk);
+    return walk_nodes<false>(walk);
 }
 
 }  // namespace gnomon::interval::HWY_NAMESPACE

@@ -13,13 +13,6 @@ namespace gnomon::interval {
 
 inline constexpr int kMaxTexels = TileTracer::kMaxTexels;
 
-/// Texels by where they are along one of a tile's axes, in strips of equal width.
-struct Strips {
-    static constexpr int kCount = 32;  ///< four for each of 8 texels in a row
-    std::uint64_t from[kCount];        ///< those in a strip, and in all after it
-    std::uint64_t to[kCount];          ///< those in a strip, and in all before it
-};
-
 /// Texels of one plane, in the tree's frame. The origin of a texel's rays is
 /// center + s * u_axis + t * v_axis, s and t in [-1, 1], but for `residual_m`.
 struct Tile {
@@ -29,7 +22,10 @@ struct Tile {
     float u_axis_m[3], v_axis_m[3];
     float normal[3];
     alignas(64) float s[kMaxTexels], t[kMaxTexels];
-    Strips strips_s, strips_t;     ///< walk_tree() sets them
+    /// Gradients of s and t; their product, and the greater of their magnitudes.
+    float s_per_m[3], t_per_m[3];
+    float per_m2, per_m;
+    float size_m;                  ///< sum of magnitudes of the axes
     float lower_m[3], upper_m[3];  ///< around the origins, with room for the tree's roundings
     float residual_m = 0.0f;
     /// Heights over the tile's plane, and distances from planes of triangles, that are smaller are
@@ -67,10 +63,10 @@ struct Term {
         u,
         v,
         det,
-        u_along_s,
-        u_along_t,
-        v_along_s,
-        v_along_t,
+        edge1_s,
+        edge1_t,
+        edge2_s,
+        edge2_t,
         error,
         side,
         side_along_s,
@@ -80,18 +76,18 @@ struct Term {
     };
 };
 
-/// Triangles at steps that may darken some texels of the tile: to be tested texel by texel.
+/// Triangles at steps that may darken some texels of the tile: to be tested texel by texel. A
+/// record holds those of a leaf at one step: a register of each term, and which lanes are to be
+/// tested.
 struct Pairs {
-    static constexpr int kCapacity = 1024;
+    static constexpr int kRecords = 64;
     /// So many wait before they are tested: more darken less beforehand, fewer cost more calls.
-    static constexpr int kBatch = 24;
+    static constexpr int kBatch = 8;
 
-    int count = 0;
-    // A vector more: they are written a vector at a time.
-    alignas(64) float terms[Term::count][kCapacity + kWidth];
-    std::int32_t step[kCapacity + kWidth];
-    std::int32_t leaf[kCapacity + kWidth];
-    std::int32_t lane[kCapacity + kWidth];
+    int records = 0;
+    alignas(64) float terms[kRecords][Term::count * kWidth];
+    std::uint32_t lanes[kRecords];
+    std::int32_t step[kRecords], leaf[kRecords], first_lane[kRecords];
 };
 
 /// A triangle that has darkened texels: the next tile tries it first.
@@ -120,6 +116,12 @@ struct Walk {
     Vec3 facing_normal_ws{0.0f};
     RangeTerms ranges;
     Tile tile;
+    /// The sun's direction in a tile's coordinates, where it is made as high as 1: how far it
+    /// slants, and how much it was stretched for it. walk_tree() sets them for tiles of several
+    /// texels.
+    alignas(64) float slant_s[DayPath::kMaxSteps], slant_t[DayPath::kMaxSteps];
+    alignas(64) float stretch[DayPath::kMaxSteps];
+    DVec3 origins[kMaxTexels];  ///< of the texels' rays, in the tree's frame
 
     /// Bit i of lit[k]: texel i is not yet known to be dark at step k. Bit k of open: some are not.
     alignas(64) std::uint64_t lit[DayPath::kMaxSteps];
@@ -143,6 +145,9 @@ struct Walk {
     Culprit culprits[kMaxCulprits];
     int culprit_count = 0;
 
+    const Leaf& leaf_of(std::int32_t leaf) const {
+        return leaf == kHintLeaf ? hint_leaf : tree->leaves()[static_cast<std::size_t>(leaf)];
+    }
     trace::SurfaceId surface(std::int32_t leaf, int lane) const {
         const LeafIds& ids =
             leaf == kHintLeaf ? hint_ids : tree->leaf_ids()[static_cast<std::size_t>(leaf)];
@@ -213,9 +218,10 @@ std::int64_t walk_targets();
 
 // What float leaves to double.
 
-/// Those of `texels` at `step` for which the triangle is in the way.
+/// Those of `texels` at `step` for which the triangle is in the way. `is_in_front` of all of them,
+/// if the sun is behind it, and has no holes.
 std::uint64_t blocked_texels(const Walk& walk, std::uint64_t texels, int step, std::int32_t leaf,
-                             int lane);
+                             int lane, bool is_in_front);
 
 /// Whether a triangle that is nearly in the tile's plane is in nobody's way, because it is on or
 /// below all receivers' planes.
