@@ -19,9 +19,8 @@ namespace gnomon::interval::HWY_NAMESPACE {
 /// Visits of one leaf, a register each.
 inline constexpr int kVisits = kWidth / kLanes;
 
-/// The triangles of a visit that some step can see, with the steps.
+/// The triangles of a visit that some step can see, with the first and the last step of all.
 struct SeenTriangles {
-    alignas(64) float first[kLanes], last[kLanes];
     std::uint32_t any;
     std::uint32_t low;  ///< those that may be on or below the tile's plane
     int first_step, last_step;
@@ -70,8 +69,6 @@ HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangl
     seen.low = bits_of(hn::Le(heights.top, heights.error));
     if (visit.last_step - visit.first_step < kFewSteps<kSingle>) {
         seen.any = bits_of(above);
-        hn::Store(splat(static_cast<float>(visit.first_step)), Floats(), seen.first);
-        hn::Store(splat(static_cast<float>(visit.last_step)), Floats(), seen.last);
         seen.first_step = visit.first_step;
         seen.last_step = visit.last_step;
         return;
@@ -79,8 +76,6 @@ HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangl
     const Steps steps =
         cut(steps_towards(walk.ranges, boxes_of(walk.tile, t)), visit.first_step, visit.last_step);
     seen.any = bits_of(hn::And(steps.any, above));
-    hn::Store(steps.first, Floats(), seen.first);
-    hn::Store(steps.last, Floats(), seen.last);
     const Vf none_first = splat(walk.ranges.last_step), none_last = splat(0.0f);
     const Vf first = hn::IfThenElse(steps.any, steps.first, none_first);
     const Vf last = hn::IfThenElse(steps.any, steps.last, none_last);
@@ -115,26 +110,21 @@ private:
     std::uint64_t bits_;
 };
 
-/// The triangles that a step can see.
-HWY_INLINE Lanes seen_at(Vf first, Vf last, int step) {
-    const Vf at = splat(static_cast<float>(step));
-    return hn::And(hn::Le(first, at), hn::Ge(last, at));
-}
-
 HWY_INLINE Lanes lanes_of(std::uint32_t bits) {
     const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
                                    static_cast<std::uint8_t>(bits >> 8)};
     return hn::LoadMaskBits(Floats(), bytes);
 }
 
-/// Puts the terms of a step in line, `some` of which are to be tested.
+/// Puts the terms of a step in line, `some` of which are to be tested; `masked` ones have holes.
 template <bool kSingle>
 HWY_INLINE float* append(Pairs& pairs, const LeafVisit& visit, int step,
-                         const Terms<kSingle>& terms, std::uint32_t some) {
+                         const Terms<kSingle>& terms, std::uint32_t some, std::uint32_t masked) {
     const int record = pairs.records;
     float* const to = pairs.terms[record];
     terms.store(to);
     pairs.lanes[record] = some;
+    pairs.masked[record] = some & masked;
     pairs.step[record] = step;
     pairs.leaf[record] = visit.id;
     pairs.first_lane[record] = visit.first_lane;
@@ -157,33 +147,57 @@ template <bool kMixed>
 HWY_NOINLINE void test_pairs(Walk& walk);
 
 /// Triangles that have the whole tile on one side.
-template <bool kSingle>
 HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
-                             Lanes lanes, const Coefficients<kSingle>& coefficients) {
+                             Lanes lanes, const Coefficients<false>& coefficients) {
     const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
     const Lanes solid = hn::And(lanes, lanes_of(~masked));
-    const Vf first = load(seen.first), last = load(seen.last);
     OpenSteps steps(walk, seen);
     for (int step = steps.next(); step >= 0; step = steps.next()) {
-        const Lanes active = seen_at(first, last, step);
-        const Terms<kSingle> terms(walk, coefficients, step);
-        const std::uint32_t all =
-            bits_of(hn::And(hn::And(active, solid), hn::Gt(terms.least(), terms.error)));
+        const Terms<false> terms(walk, coefficients, step);
+        const std::uint32_t all = bits_of(hn::And(solid, hn::Gt(terms.least(), terms.error)));
         if (all != 0) {
             walk.credit(visit.id, visit.first_lane + std::countr_zero(all), walk.tile.texels);
             walk.darken(step, ~std::uint64_t{0});
             continue;
         }
-        Lanes some =
-            hn::And(hn::And(active, lanes), hn::Ge(terms.greatest(), hn::Neg(terms.error)));
-        if constexpr (kSingle) {
-            if (hn::AllFalse(Floats(), some)) continue;
-        } else {
-            // Seldom none of a leaf: a branch would cost more than it saves.
-            some = hn::And(some, terms.near(walk, coefficients, step));
-        }
-        append(walk.pairs, visit, step, terms, bits_of(some));
+        const Lanes some = hn::And(hn::And(lanes, terms.near(walk, coefficients, step)),
+                                   hn::Ge(terms.greatest(), hn::Neg(terms.error)));
+        append(walk.pairs, visit, step, terms, bits_of(some), masked);
         if (walk.pairs.records == Pairs::kRecords) test_pairs<false>(walk);
+    }
+}
+
+/// The same for a single texel, which most steps leave no doubt about: without a branch that
+/// depends on whether they are dark.
+HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
+                             Lanes lanes, const Coefficients<true>& coefficients) {
+    constexpr int kLeastGain = 4;  // steps that make a triangle worth trying first
+    const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
+    const Lanes solid = hn::And(lanes, lanes_of(~masked));
+    alignas(64) std::int32_t gains[kLanes] = {};
+    std::uint64_t any = 0;
+    for (int word = seen.first_step / 64; word <= seen.last_step / 64; ++word) {
+        std::uint64_t rest = walk.open_steps(word, seen.first_step, seen.last_step), dark = 0;
+        for (; rest != 0; rest &= rest - 1) {
+            const int bit = std::countr_zero(rest), step = 64 * word + bit;
+            const Terms<true> terms(walk, coefficients, step);
+            const Vf least = terms.least();
+            const std::uint32_t all = bits_of(hn::And(solid, hn::Gt(least, terms.error)));
+            const std::uint32_t some = bits_of(hn::And(lanes, hn::Ge(least, hn::Neg(terms.error))));
+            const bool is_dark = all != 0;
+            dark |= std::uint64_t{is_dark} << bit;
+            gains[std::countr_zero(all | 1u << (kLanes - 1))] += is_dark ? 1 : 0;
+            if (!is_dark && some != 0) {
+                append(walk.pairs, visit, step, terms, some, masked);
+                if (walk.pairs.records == Pairs::kRecords) test_pairs<false>(walk);
+            }
+        }
+        walk.open[word] &= ~dark;
+        any |= dark;
+    }
+    if (any == 0) return;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        if (gains[lane] >= kLeastGain) walk.credit(visit.id, visit.first_lane + lane, gains[lane]);
     }
 }
 
@@ -209,16 +223,15 @@ HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangl
                            const Sides& sides) {
     // Triangles whose height is still to be judged, and those it is left to each texel for.
     std::uint32_t unjudged = seen.low, varying = 0;
-    const Vf first = load(seen.first), last = load(seen.last);
+    const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
     OpenSteps steps(walk, seen);
     for (int step = steps.next(); step >= 0; step = steps.next()) {
         Terms<kSingle> terms(walk, coefficients, step);
         const Lanes near = terms.near(walk, coefficients, step);
         const Vf signs = hn::And(terms.det, splat(-0.0f));
         terms.negate_where(signs);
-        const Lanes active = hn::And(near, seen_at(first, last, step));
         std::uint32_t some =
-            bits_of(hn::And(active, hn::Ge(terms.greatest(), hn::Neg(terms.error)))) & lanes;
+            bits_of(hn::And(near, hn::Ge(terms.greatest(), hn::Neg(terms.error)))) & lanes;
         if ((some & unjudged) != 0) {
             lanes &= ~judge_heights(walk, visit, some & unjudged, varying);
             unjudged &= ~some;
@@ -226,7 +239,7 @@ HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangl
         }
         if (some == 0) continue;
         Pairs& pairs = walk.mixed_pairs;
-        float* const record = append(pairs, visit, step, terms, some);
+        float* const record = append(pairs, visit, step, terms, some, masked);
         store_sides(record, sides, signs, lanes_of(varying));
         if (pairs.records == Pairs::kRecords) test_pairs<true>(walk);
     }
@@ -245,7 +258,7 @@ HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles& se
     const Coefficients<kSingle> coefficients(walk.tile, t, turned);
     const std::uint32_t mixed_bits = bits_of(mixed);
     if (mixed_bits != seen.any) {
-        cast_unmixed<kSingle>(walk, visit, seen, hn::AndNot(mixed, present), coefficients);
+        cast_unmixed(walk, visit, seen, hn::AndNot(mixed, present), coefficients);
     }
     if (mixed_bits != 0) cast_mixed<kSingle>(walk, visit, seen, mixed_bits, coefficients, sides);
 }

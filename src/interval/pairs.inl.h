@@ -75,7 +75,7 @@ HWY_INLINE void test_singly(Walk& walk, const Pairs& pairs, int record, int firs
         if (lit == 0) return;
         const int lane = std::countr_zero(rest), leaf_lane = pairs.first_lane[record] + lane;
         Hits hits = hits_of<kMixed, kRegisters>(walk.tile, pairs.terms[record] + lane, first_texel);
-        const bool has_holes = (walk.masked(pairs.leaf[record]) >> leaf_lane & 1) != 0;
+        const bool has_holes = (pairs.masked[record] >> lane & 1) != 0;
         if (has_holes) hits.sure = 0;
         const std::uint64_t unsure = hits.possible & ~hits.sure & lit;
         if (unsure != 0) {
@@ -86,21 +86,17 @@ HWY_INLINE void test_singly(Walk& walk, const Pairs& pairs, int record, int firs
     }
 }
 
-/// Tests the triangles of a record together, which have no holes and all texels on one side: texels
-/// that are surely hit by any of them need no closer look, and few others do.
+/// Which texels the triangles of a record hit, together. All have the whole tile on one side.
 template <int kRegisters>
-HWY_INLINE void test_together(Walk& walk, const Pairs& pairs, int record, int first_texel) {
-    const Tile& tile = walk.tile;
-    const int step = pairs.step[record];
-    const std::uint64_t lit = walk.lit[step];
-    if (lit == 0) return;
+HWY_INLINE Hits hits_together(const Tile& tile, const float* terms, std::uint32_t lanes,
+                              int first_texel) {
     Vf greatest[kRegisters], error = splat(0.0f);
     for (Vf& most : greatest)
         most = splat(std::numeric_limits<float>::lowest());
-    for (std::uint32_t rest = pairs.lanes[record]; rest != 0; rest &= rest - 1) {
-        const float* const terms = pairs.terms[record] + std::countr_zero(rest);
-        const Plane plane(terms);
-        error = hn::Max(error, splat(terms[Term::error * kLanes]));
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const float* const at = terms + std::countr_zero(lanes);
+        const Plane plane(at);
+        error = hn::Max(error, splat(at[Term::error * kLanes]));
         for (int i = 0; i < kRegisters; ++i) {
             const int first = first_texel + i * kLanes;
             greatest[i] =
@@ -113,6 +109,22 @@ HWY_INLINE void test_together(Walk& walk, const Pairs& pairs, int record, int fi
         hits.sure |= std::uint64_t{bits_of(hn::Gt(greatest[i], error))} << first;
         hits.possible |= std::uint64_t{bits_of(hn::Ge(greatest[i], hn::Neg(error)))} << first;
     }
+    return hits;
+}
+
+/// Tests the triangles of a record: texels that are surely hit by any of them need no closer look,
+/// and few others do.
+template <bool kMixed, int kRegisters>
+HWY_INLINE void test_record(Walk& walk, const Pairs& pairs, int record, int first_texel) {
+    const int step = pairs.step[record];
+    const std::uint64_t lit = walk.lit[step];
+    if (lit == 0) return;
+    if (kMixed || pairs.masked[record] != 0) {
+        test_singly<kMixed, kRegisters>(walk, pairs, record, first_texel);
+        return;
+    }
+    const Hits hits =
+        hits_together<kRegisters>(walk.tile, pairs.terms[record], pairs.lanes[record], first_texel);
     walk.darken(step, hits.sure);
     if ((hits.possible & ~hits.sure & lit) != 0)
         test_singly<false, kRegisters>(walk, pairs, record, first_texel);
@@ -121,14 +133,8 @@ HWY_INLINE void test_together(Walk& walk, const Pairs& pairs, int record, int fi
 /// Tests the waiting triangles on some registers of texels.
 template <bool kMixed, int kRegisters>
 HWY_INLINE void test_on(Walk& walk, const Pairs& pairs, int first_texel) {
-    for (int record = 0; record < pairs.records; ++record) {
-        const std::uint32_t masked = walk.masked(pairs.leaf[record]) >> pairs.first_lane[record];
-        if (kMixed || (masked & pairs.lanes[record]) != 0) {
-            test_singly<kMixed, kRegisters>(walk, pairs, record, first_texel);
-        } else {
-            test_together<kRegisters>(walk, pairs, record, first_texel);
-        }
-    }
+    for (int record = 0; record < pairs.records; ++record)
+        test_record<kMixed, kRegisters>(walk, pairs, record, first_texel);
 }
 
 /// Tests the waiting triangles at their steps, texel by texel.

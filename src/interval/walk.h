@@ -86,7 +86,7 @@ struct Pairs {
 
     int records = 0;
     alignas(64) float terms[kRecords][Term::count * kWidth];
-    std::uint32_t lanes[kRecords];
+    std::uint32_t lanes[kRecords], masked[kRecords];  ///< a bit for each; those with holes
     std::int32_t step[kRecords], leaf[kRecords], first_lane[kRecords];
 };
 
