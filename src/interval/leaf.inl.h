@@ -248,14 +248,15 @@ HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangl
 template <bool kSingle>
 HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen) {
     const Triangles t = triangles_of(walk.tile, visit);
-    const Sides sides = sides_of(walk.tile, t);
+    const Vec3f normal = cross(t.edge1, t.edge2);
+    const Sides sides = sides_of<kSingle>(walk.tile, t, normal);
     const Vf reach = hn::MulAdd(
         splat(kRoundUp), hn::Add(hn::Abs(sides.along_s), hn::Abs(sides.along_t)), sides.error);
     const Lanes present = lanes_of(seen.any);
     const Lanes mixed =
         hn::And(present, hn::Or(hn::Le(hn::Abs(sides.center), reach), lanes_of(seen.low)));
     const Lanes turned = hn::AndNot(mixed, hn::Lt(sides.center, splat(0.0f)));
-    const Coefficients<kSingle> coefficients(walk.tile, t, turned);
+    const Coefficients<kSingle> coefficients(walk.tile, t, normal, turned);
     const std::uint32_t mixed_bits = bits_of(mixed);
     if (mixed_bits != seen.any) {
         cast_unmixed(walk, visit, seen, hn::AndNot(mixed, present), coefficients);

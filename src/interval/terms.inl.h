@@ -85,11 +85,11 @@ struct Coefficients<true> {
     Vf error;
 
     /// `turned`: lanes whose determinant is negative where rays hit them.
-    HWY_INLINE Coefficients(const Tile& tile, const Triangles& t, Lanes turned) {
+    HWY_INLINE Coefficients(const Tile& tile, const Triangles& t, Vec3f normal, Lanes turned) {
         const Vf signs = hn::IfThenElseZero(turned, splat(-0.0f));
         u = negated_where(cross(t.corner, t.edge2), signs);
         v = negated_where(cross(t.edge1, t.corner), signs);
-        det = negated_where(cross(t.edge2, t.edge1), signs);
+        det = negated_where(normal, hn::Xor(signs, splat(-0.0f)));
         Vf place_m;
         error = error_of<true>(tile, t, place_m);
     }
@@ -102,7 +102,7 @@ struct Coefficients<false> {
     Vec3f corner, edge1, edge2;
     Vf error, corner_error;  ///< of u, v and w, and of a shadow's corners
 
-    HWY_INLINE Coefficients(const Tile& tile, const Triangles& t, Lanes turned) {
+    HWY_INLINE Coefficients(const Tile& tile, const Triangles& t, Vec3f, Lanes turned) {
         const Vec3f along_s = splat3(tile.s_per_m), along_t = splat3(tile.t_per_m);
         const Vec3f normal = splat3(tile.normal);
         const auto in_tile = [&](Vec3f p) HWY_ATTR {
@@ -223,8 +223,8 @@ struct Sides {
     Vf center, along_s, along_t, error;
 };
 
-HWY_INLINE Sides sides_of(const Tile& tile, const Triangles& t) {
-    const Vec3f normal = cross(t.edge1, t.edge2);
+template <bool kSingle>
+HWY_INLINE Sides sides_of(const Tile& tile, const Triangles& t, Vec3f normal) {
     const Vf size = hn::Mul(sum_of_magnitudes(t.corner),
                             hn::Mul(sum_of_magnitudes(t.edge1), sum_of_magnitudes(t.edge2)));
     const Vf place_m =
@@ -233,8 +233,13 @@ HWY_INLINE Sides sides_of(const Tile& tile, const Triangles& t) {
                    splat(tile.touch_m));
     const Vf error = hn::MulAdd(sum_of_magnitudes(normal), place_m,
                                 hn::Mul(splat(kTermRoundings * kUnitRoundoff), size));
-    return {hn::Neg(dot(t.corner, normal)), dot(splat3(tile.u_axis_m), normal),
-            dot(splat3(tile.v_axis_m), normal), hn::Mul(splat(kRoundUp), error)};
+    Sides sides{hn::Neg(dot(t.corner, normal)), splat(0.0f), splat(0.0f),
+                hn::Mul(splat(kRoundUp), error)};
+    if constexpr (!kSingle) {
+        sides.along_s = dot(splat3(tile.u_axis_m), normal);
+        sides.along_t = dot(splat3(tile.v_axis_m), normal);
+    }
+    return sides;
 }
 
 }  // namespace gnomon::interval::HWY_NAMESPACE

@@ -232,9 +232,8 @@ void open_steps(Walk& walk) {
         }
     }
     std::ranges::copy(walk.facing, walk.open);
-    const std::uint64_t all = ~std::uint64_t{0} >> (kMaxTexels - walk.tile.texels);
-    for (int step = 0; step < walk.steps; ++step)
-        walk.lit[step] = (walk.facing[step / 64] >> (step % 64) & 1) != 0 ? all : 0;
+    // Also at steps that are not open, where nobody looks.
+    std::fill_n(walk.lit, walk.steps, ~std::uint64_t{0} >> (kMaxTexels - walk.tile.texels));
 }
 
 /// Fills the hint leaf with the triangles that darkened most.
@@ -331,9 +330,10 @@ void write_masks(Walk& walk, std::span<std::uint64_t> masks) {
     std::fill(walk.lit + walk.steps, walk.lit + 64 * words, 0);
     for (std::size_t word = 0; word < words; ++word) {
         const std::span<std::uint64_t, 64> block(walk.lit + 64 * word, 64);
+        const std::uint64_t facing = walk.facing[word];
         if (walk.open[word] != 0) transpose(block);
         for (std::size_t texel = 0; texel < static_cast<std::size_t>(walk.tile.texels); ++texel)
-            masks[texel * words + word] = block[texel];
+            masks[texel * words + word] = walk.open[word] != 0 ? block[texel] & facing : 0;
     }
 }
 

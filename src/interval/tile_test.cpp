@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numbers>
 
 namespace gnomon::interval {
@@ -210,6 +211,28 @@ TEST(TileTracer, AnyPathAroundAnyPole) {
     std::ranges::generate(anywhere, [&] { return DVec3(random.in_box(1.0f)); });
     expect(anywhere, "no order at all");
     expect(std::vector<DVec3>(66, DVec3(0.3, 1.0, 0.2)), "a sun that stands still");
+}
+
+TEST(TileTracer, SunsThatGrazeTheReceivers) {
+    // Shadows are endless where the sun is in the receivers' plane. It comes as near as a
+    // billionth, on both sides, over a square of receivers, a line of them, and all at one place.
+    Random random(7);
+    const Frame frame = frame_around(pole_at(0.84));
+    std::vector<DVec3> day;
+    for (int k = 0; k < 70; ++k) {
+        const double azimuth = random.between(0.0f, 6.28f);
+        const double height = (k % 4 == 0 ? -1.0 : 1.0) * std::pow(10.0, -0.13 * k);
+        day.emplace_back(std::cos(azimuth), height, std::sin(azimuth));
+    }
+    std::vector<Receiver> receivers = receivers_on({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 8);
+    for (int i = 0; i < 128; ++i) {
+        receivers.push_back(receivers[0]);
+        if (i < 64) receivers.back().position_ws.x += 0.01f * static_cast<float>(i);
+    }
+    Mesh mesh = scattered(random, 200, 4.0f, 1.0f);
+    for (Vec3& position : mesh.positions)
+        position.y *= 0.1f;
+    expect_exact({trace::make_scene({{mesh}}), frame, day, receivers}, "grazing");
 }
 
 TEST(TileTracer, PoleAndWallCastTheShadowsOfTrigonometry) {
