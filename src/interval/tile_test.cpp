@@ -222,7 +222,9 @@ TEST(TileTracer, SunsThatGrazeTheReceivers) {
     for (int k = 0; k < 70; ++k) {
         const double azimuth = random.between(0.0f, 6.28f);
         const double height = (k % 4 == 0 ? -1.0 : 1.0) * std::pow(10.0, -0.13 * k);
-        day.emplace_back(std::cos(azimuth), height, std::sin(azimuth));
+        const bool is_tie = k % 2 == 0;
+        day.emplace_back(is_tie ? 0.0 : std::cos(azimuth), height,
+                         is_tie ? -1.0 : std::sin(azimuth));
     }
     std::vector<Receiver> receivers = receivers_on({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 8);
     for (int i = 0; i < 128; ++i) {
@@ -232,7 +234,16 @@ TEST(TileTracer, SunsThatGrazeTheReceivers) {
     Mesh mesh = scattered(random, 200, 4.0f, 1.0f);
     for (Vec3& position : mesh.positions)
         position.y *= 0.1f;
+    Mesh walls;
+    for (unsigned i = 0; i < 16; ++i) {
+        const Vec3 foot(receivers[i / 2].position_ws.x, -0.1f,
+                        -2.0f - 0.1f * static_cast<float>(i));
+        const Vec3 beside(i % 2 == 0 ? 0.03f : -0.03f, 0.2f, 0.0f);
+        walls.positions.insert(walls.positions.end(), {foot, foot + Vec3(0, 1, 0), foot + beside});
+        walls.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
     expect_exact({trace::make_scene({{mesh}}), frame, day, receivers}, "grazing");
+    expect_exact({trace::make_scene({{walls}}), frame, day, receivers}, "grazing, ties");
 }
 
 TEST(TileTracer, PoleAndWallCastTheShadowsOfTrigonometry) {
