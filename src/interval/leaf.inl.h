@@ -57,17 +57,15 @@ HWY_INLINE Heights heights_of(const Tile& tile, const Triangles& t) {
 }
 
 /// Where a leaf is seen at so few steps, testing all of its triangles at each takes less time than
-/// finding the steps of each; a step takes longer for more than one texel.
-template <bool kSingle>
-inline constexpr int kFewSteps = kSingle ? 8 : 2;
+/// finding the steps of each.
+inline constexpr int kFewSteps = 8;
 
-template <bool kSingle>
 HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangles& seen) {
     const Triangles t = triangles_of(walk.tile, visit);
     const Heights heights = heights_of(walk.tile, t);
     const Lanes above = hn::Gt(heights.top, hn::Neg(heights.error));
     seen.low = bits_of(hn::Le(heights.top, heights.error));
-    if (visit.last_step - visit.first_step < kFewSteps<kSingle>) {
+    if (visit.last_step - visit.first_step < kFewSteps) {
         seen.any = bits_of(above);
         seen.first_step = visit.first_step;
         seen.last_step = visit.last_step;
@@ -271,7 +269,7 @@ HWY_INLINE void cast_leaves(Walk& walk) {
     const int count = walk.leaf_count;
     walk.leaf_count = 0;
     for (int i = 0; i < count; ++i)
-        find_steps<kSingle>(walk, walk.leaves[i], seen[i]);
+        find_steps(walk, walk.leaves[i], seen[i]);
     for (int i = 0; i < count; ++i) {
         if (seen[i].any == 0 || !walk.any_open(seen[i].first_step, seen[i].last_step)) continue;
         cast<kSingle>(walk, walk.leaves[i], seen[i]);
