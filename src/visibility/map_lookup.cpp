@@ -246,6 +246,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
     frame.blend = static_cast<float>(lookup_layers.blend);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         frame.layers[i] = layer_frame(layers[i].fit, receivers.camera.eye_ws());
+        frame.layers[i].bias_scale = layers[i].bias_scale;
         frame.layers[i].first_depth =
             i == 0 ? 1.0f : depth_at(receivers.camera, receivers.size, layers[i].from_m);
     }

@@ -69,7 +69,8 @@ enum class LayerChoice { by_distance, by_axis };
 /// A layer of a map as receivers choose it.
 struct LookupLayer {
     LightFit fit;
-    double from_m = 0.0;  ///< by distance: nearer receivers look in the layer before
+    double from_m = 0.0;      ///< by distance: nearer receivers look in the layer before
+    float bias_scale = 1.0f;  ///< of BiasOptions::bias_constant
 };
 
 struct LookupLayers {

@@ -78,6 +78,7 @@ struct MapLayerFrame {
     // and the longer of both steps in metres.
     vec3 steps;
     float first_depth;  // the layer's receivers are not nearer than this depth of the picture
+    float bias_scale;   // of MapBias::constant
     MapSpace space;
 };
 

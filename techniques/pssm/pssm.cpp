@@ -24,6 +24,8 @@ struct Options : MapOptions {
     int splits = 4;
     double split_lambda = 0.8;
     double split_blend = 0.0;
+    double split_bias = 1.0;
+    double camera_shift = 0.0;
     Fit fit = Fit::tight;
     int stable_step = 1;
     Warp warp = Warp::none;
@@ -39,6 +41,11 @@ const ParamTable<Options>& param_table() {
          number("split_blend", &Options::split_blend, 0.0, 0.5, "1",
                 "of the distance at which a split begins, over how much before it pixels mix with "
                 "it by turns"),
+         number("split_bias", &Options::split_bias, 0.125, 8.0, "1",
+                "bias_constant of a split, of that of the one before"),
+         number("camera_shift", &Options::camera_shift, 0.0, 1e6, "m",
+                "maps also hold what is up to so far behind the camera; casters there are drawn "
+                "without it too"),
          choice("fit", &Options::fit, {"tight", "stable"},
                 "tight: the smallest map around what is seen; stable: edges do not crawl when the "
                 "camera moves"),
@@ -49,6 +56,12 @@ const ParamTable<Options>& param_table() {
                 "smaller texels towards the camera within a split; only with a tight fit")},
         map_rows<Options>());
     return table;
+}
+
+/// The camera moved against its view.
+Camera moved_back(Camera camera, double by_m) {
+    camera.view_from_world[3].z -= static_cast<float>(by_m);
+    return camera;
 }
 
 /// A range that holds this one and stays the same while the camera moves a little: its ends are
@@ -77,17 +90,31 @@ private:
             for (std::size_t i = 0; i + 1 < distances_m.size(); ++i) {
                 const DepthRange range{distances_m[i] * (1.0 - plan.blend), distances_m[i + 1]};
                 const Seen inside = seen.within(range);
-                const std::vector<DVec3> receivers_ws =
+                std::vector<DVec3> receivers_ws =
                     visible_corners(frame.camera, frame.size, inside.bounds, inside.range);
                 // A stable map that no receiver needs now keeps its place, and what is in it.
                 if (receivers_ws.empty() && options_.fit != Fit::stable) continue;
+                const bool is_needed = !receivers_ws.empty();
+                add_shifted(receivers_ws, frame, range);
                 plan.layers.push_back(split(frame, inside, range, receivers_ws));
-                plan.layers.back().needed = !receivers_ws.empty();
+                plan.layers.back().needed = is_needed;
                 plan.layers.back().lookup.from_m = distances_m[i];
+                plan.layers.back().lookup.bias_scale =
+                    static_cast<float>(std::pow(options_.split_bias, static_cast<double>(i)));
             }
         }
         if (plan.layers.empty()) plan.layers.push_back(split(frame, seen, {0.0, 0.0}, {}));
         return plan;
+    }
+
+    /// Also what a camera that is moved back would see of the scene in the split.
+    void add_shifted(std::vector<DVec3>& receivers_ws, const Frame& frame, DepthRange range) const {
+        if (!(options_.camera_shift > 0.0)) return;
+        range.far_m += options_.camera_shift;
+        const std::vector<DVec3> more =
+            visible_corners(moved_back(frame.camera, options_.camera_shift), frame.size,
+                            frame.scene.bounds(), range);
+        receivers_ws.insert(receivers_ws.end(), more.begin(), more.end());
     }
 
     PlannedLayer split(const Frame& frame, const Seen& seen, DepthRange range,
@@ -99,9 +126,10 @@ private:
         const int step_texels =
             std::clamp(options_.stable_step, 1, std::max(options_.map_size / kLeastSteps, 1));
         const LightFit fit =
-            stable ? fit_directional_stable(light, frame.camera, frame.size, range, bounds,
-                                            options_.size_texels(), options_.margin_texels(),
-                                            step_texels)
+            stable ? fit_directional_stable(
+                         light, moved_back(frame.camera, options_.camera_shift), frame.size,
+                         {range.near_m, range.far_m + options_.camera_shift}, bounds,
+                         options_.size_texels(), options_.margin_texels(), step_texels)
                    : fit_warped(options_.warp, kDefaultFocus, light, frame.camera, receivers_ws,
                                 bounds, options_.size_texels(), options_.margin_texels());
         return directional_layer(frame, seen, fit, stable ? range : seen.range);

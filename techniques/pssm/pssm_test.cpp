@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace gnomon {
@@ -211,6 +212,54 @@ TEST_F(MapTechniqueTest, BlendedSplitsHideTheirSeams) {
     EXPECT_LT(compare(blended, truth, mask).rmse, 1.15 * compare(cut, truth, mask).rmse);
     EXPECT_LT(compare(blended, truth, mask).artefact_lit, 5e-4);
     EXPECT_LT(compare(blended, truth, mask).artefact_shadow, 5e-4);
+}
+
+// What the first scheme had: a margin behind the camera, which costs texels and brings no caster
+// that is not drawn without it, and a bias for each split.
+TEST_F(MapTechniqueTest, AShiftBehindTheCameraCostsTexelsAndMissesNothing) {
+    const Frame frame = frame_of("field-small");
+    for (const char* fit : {"tight", "stable"}) {
+        const Params shifted{{"fit", std::string(fit)}, {"camera_shift", 20.0}};
+        const auto least_texel_m = [&](const Visibility& visibility) {
+            float least_m = std::numeric_limits<float>::infinity();
+            for (const float texel_m : visibility.texel_size_m().pixels()) {
+                if (texel_m > 0.0f) least_m = std::min(least_m, texel_m);
+            }
+            return least_m;
+        };
+        const Visibility moved = make_technique(context(), "pssm", shifted)->render(frame);
+        const Visibility still =
+            make_technique(context(), "pssm", {{"fit", std::string(fit)}})->render(frame);
+        EXPECT_GT(least_texel_m(moved), 1.1f * least_texel_m(still)) << fit;
+        const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
+        const Comparison error = compare(moved, truth, comparison_mask(context(), frame));
+        EXPECT_LE(error.artefact_lit, 0.001) << fit;
+        EXPECT_LE(error.artefact_shadow, 0.0003) << fit;
+    }
+}
+
+TEST_F(MapTechniqueTest, EachSplitMayHaveABiasOfItsOwn) {
+    const Frame frame = frame_of("field-small");
+    const auto with = [&](int splits, double split_bias) {
+        return make_technique(
+                   context(), "pssm",
+                   {{"splits", splits}, {"bias_constant", 4.0}, {"split_bias", split_bias}})
+            ->render(frame);
+    };
+    EXPECT_EQ(changed(with(1, 1.0), with(1, 8.0)), 0.0);
+    const Visibility alike = with(2, 1.0);
+    const Visibility growing = with(2, 8.0);
+    const float first_m = *std::ranges::min_element(alike.texel_size_m().pixels(), {},
+                                                    [](float m) { return m > 0.0f ? m : 1e9f; });
+    double near = 0.0;
+    double far = 0.0;
+    for (std::size_t i = 0; i < alike.image().pixels().size(); ++i) {
+        const bool first = alike.texel_size_m().pixels()[i] == first_m;
+        (first ? near : far) +=
+            static_cast<double>(std::abs(growing.image().pixels()[i] - alike.image().pixels()[i]));
+    }
+    EXPECT_EQ(near, 0.0);
+    EXPECT_GT(far, 10.0);  // of 57,600 pixels
 }
 
 TEST_F(MapTechniqueTest, MoreSplitsErrLess) {
