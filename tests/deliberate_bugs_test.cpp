@@ -73,6 +73,32 @@ TEST_F(DeliberateBugs, NoBiasGivesAcne) {
     }
 }
 
+// Beside hollows, and on walls that a high sun hardly meets, faults are looked for with rays that
+// stay on the receiver's plane: what hides them there must not excuse all of a wall.
+TEST_F(DeliberateBugs, AcneShowsInHollowsAndOnGrazedWalls) {
+    constexpr float kSide_m = 3.0f;
+    const auto slope = [](float rise) {  // up from the axis to the right
+        return test::quad({0, 0, kSide_m}, {kSide_m, rise * kSide_m, 0}, {0, 0, -2 * kSide_m});
+    };
+    const auto left = test::quad({-kSide_m, 0, kSide_m}, {kSide_m, 0, 0}, {0, 0, -2 * kSide_m});
+    const auto bare = [] {
+        Params params = coarse_map();
+        params.set("receiver_plane", false);
+        for (const char* name : {"caster_error", "bias_constant", "bias_slope", "normal_offset"})
+            params.set(name, 0.0);
+        return params;
+    };
+    for (const float rise : {0.4f, 1.0f, 20.0f}) {  // 22°, 45°, 87°
+        SCOPED_TRACE(rise);
+        Frame frame = sunny();
+        frame.scene = Scene(test::scene_data({left, slope(rise)}));
+        frame.camera = look_at({-2.5f, 4.0f, 2.0f}, {0.3f, 0.2f, 0.0f});
+        frame.light = sun(radians(85.0f), radians(270.0f), 0.0f);  // from the left
+        EXPECT_GT(test::compare_with_truth("shadow_map", frame, bare()).artefact_shadow, kPlain);
+        EXPECT_EQ(test::compare_with_truth("shadow_map", frame, coarse_map()).artefact_shadow, 0.0);
+    }
+}
+
 TEST_F(DeliberateBugs, SecondDepthsNeedNoBias) {
     Frame frame = sunny();
     frame.scene = Scene(test::scene_data({test::box({-1, 0, -1}, {1, 0.5f, 1}),  // both close

@@ -28,13 +28,14 @@ struct Comparison {
 class EdgeProbe {
 public:
     struct Place {
-        std::size_t pixel = 0;
-        double reach_m = 0.0;
+        std::size_t pixel = 0;  ///< index into the picture, row-major, top row first
+        double reach_m = 0.0;   ///< above 0
     };
 
     virtual ~EdgeProbe() = default;
     /// At which places the truth is of the class, lit or in shadow, somewhere within the reach of
-    /// the pixel's receiver, across the light; 1 for those, else 0.
+    /// the pixel's receiver, across the light: one number for each, in their order; 1 for those,
+    /// else 0. Pixels must be of the picture that the probe was made for, and have receivers.
     virtual std::vector<std::uint8_t> find(std::span<const Place> places, bool lit) const = 0;
 };
 

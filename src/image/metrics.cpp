@@ -110,6 +110,10 @@ Fractions judge(const FalsePixels& found, Extent size, double stray_px,
     }
     if (edges != nullptr && !doubtful.empty()) {
         const std::vector<std::uint8_t> explained = edges->find(doubtful, found.lit);
+        if (explained.size() != doubtful.size()) {
+            fail_input("compare: mask.edges answered {} of {} places; it must answer each",
+                       explained.size(), doubtful.size());
+        }
         artefacts -= static_cast<std::size_t>(std::ranges::count(explained, 1));
     }
     return {static_cast<double>(found.pixels.size()) / pixels, static_cast<double>(stray) / pixels,

@@ -20,11 +20,11 @@ constexpr int kPoints = 64;
 /// Places that are looked at together: enough for all threads.
 constexpr std::size_t kBatch = 1024;
 
-/// Of the light on a plane, at 89.9°: there a reach of it is as long as 570 across the light.
-constexpr float kMinCosine = 0.00175f;
+/// Of the light on a plane, at 89.4°: steeper ones are followed by no filter (map_bias.glsl).
+constexpr float kMinCosine = 0.01f;
 
 /// Of the reach: what hides a point of the plane less far above it may be a neighbour on a surface
-/// that bends.
+/// that bends, up to 18° within the reach. Of sharper hollows the map's texels mix both sides.
 constexpr float kRaised = 1.0f / 3.0f;
 
 /// The light without extent, where it has a middle that stands for it.
