@@ -19,11 +19,19 @@ namespace gnomon::interval::HWY_NAMESPACE {
 /// Visits of one leaf, a register each.
 inline constexpr int kVisits = kWidth / kLanes;
 
-/// The triangles of a visit that some step can see, with the first and the last step of all.
+/// What is surely hit, and what may be: a bit for each texel, or for each step.
+struct Hits {
+    std::uint64_t sure = 0, possible = 0;
+};
+
+/// The triangles of a visit that some step can see, with the first and the last step of all, and
+/// those of each unless the leaf is seen at few steps.
 struct SeenTriangles {
     std::uint32_t any;
     std::uint32_t low;  ///< those that may be on or below the tile's plane
     int first_step, last_step;
+    bool has_steps_of_each;
+    alignas(64) float first_of_each[kLanes], last_of_each[kLanes];
 };
 
 HWY_INLINE Boxes boxes_of(const Tile& tile, const Triangles& t) {
@@ -65,7 +73,8 @@ HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangl
     const Heights heights = heights_of(walk.tile, t);
     const Lanes above = hn::Gt(heights.top, hn::Neg(heights.error));
     seen.low = bits_of(hn::Le(heights.top, heights.error));
-    if (visit.last_step - visit.first_step < kFewSteps) {
+    seen.has_steps_of_each = visit.last_step - visit.first_step >= kFewSteps;
+    if (!seen.has_steps_of_each) {
         seen.any = bits_of(above);
         seen.first_step = visit.first_step;
         seen.last_step = visit.last_step;
@@ -74,6 +83,8 @@ HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangl
     const Steps steps =
         cut(steps_towards(walk.ranges, boxes_of(walk.tile, t)), visit.first_step, visit.last_step);
     seen.any = bits_of(hn::And(steps.any, above));
+    hn::Store(steps.first, Floats(), seen.first_of_each);
+    hn::Store(steps.last, Floats(), seen.last_of_each);
     const Vf none_first = splat(walk.ranges.last_step), none_last = splat(0.0f);
     const Vf first = hn::IfThenElse(steps.any, steps.first, none_first);
     const Vf last = hn::IfThenElse(steps.any, steps.last, none_last);
@@ -165,11 +176,119 @@ HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTrian
     }
 }
 
+/// Steps that make a triangle worth trying first for a single texel.
+inline constexpr int kLeastSingleGain = 4;
+
+/// What single texels need of one triangle, in all lanes.
+class TriangleTerms {
+public:
+    static constexpr int kTerms = 10;
+
+    /// Those of a register of triangles, to choose from.
+    struct Stored {
+        alignas(64) float terms[kTerms][kLanes];
+
+        HWY_INLINE explicit Stored(const Coefficients<true>& c) {
+            const Vf all[kTerms] = {c.u.x, c.u.y,   c.u.z,   c.v.x,   c.v.y,
+                                    c.v.z, c.det.x, c.det.y, c.det.z, c.error};
+            for (int i = 0; i < kTerms; ++i)
+                hn::Store(all[i], Floats(), terms[i]);
+        }
+        HWY_INLINE Vec3f vector(int first, int lane) const {
+            return {splat(terms[first][lane]), splat(terms[first + 1][lane]),
+                    splat(terms[first + 2][lane])};
+        }
+    };
+
+    HWY_INLINE TriangleTerms(const Stored& stored, int lane)
+        : u_(stored.vector(0, lane)),
+          v_(stored.vector(3, lane)),
+          det_(stored.vector(6, lane)),
+          error_(splat(stored.terms[kTerms - 1][lane])) {}
+
+    /// The steps of a register from `step` that are surely dark, and those that may be: bit 0 is
+    /// `step`.
+    HWY_INLINE Hits hits(const Walk& walk, int step) const {
+        const Vec3f sun{hn::LoadU(Floats(), walk.sun[0] + step),
+                        hn::LoadU(Floats(), walk.sun[1] + step),
+                        hn::LoadU(Floats(), walk.sun[2] + step)};
+        const Vf u = dot(sun, u_), v = dot(sun, v_);
+        const Vf w = hn::Sub(hn::Sub(dot(sun, det_), u), v);
+        const Vf least = hn::Min(hn::Min(u, v), w);
+        return {bits_of(hn::Gt(least, error_)), bits_of(hn::Ge(least, hn::Neg(error_)))};
+    }
+
+private:
+    Vec3f u_, v_, det_;
+    Vf error_;
+};
+
+/// The steps of a word at which one triangle is in the way of the single texel; `open` are asked.
+HWY_INLINE std::uint64_t dark_steps(const Walk& walk, const LeafVisit& visit, int lane,
+                                    const TriangleTerms& terms, bool has_holes, int word,
+                                    std::uint64_t open) {
+    constexpr std::uint64_t kRegister = (std::uint64_t{1} << kLanes) - 1;
+    std::uint64_t dark = 0;
+    for (std::uint64_t rest = open; rest != 0;) {
+        const int bit = std::countr_zero(rest);
+        const Hits hits = terms.hits(walk, 64 * word + bit);
+        const std::uint64_t possible = hits.possible << bit & rest;
+        if (!has_holes) dark |= hits.sure << bit & rest;
+        rest &= ~(kRegister << bit);
+        for (std::uint64_t unsure = possible & ~dark; unsure != 0; unsure &= unsure - 1) {
+            const int at = std::countr_zero(unsure);
+            dark |= blocked_texels(walk, 1, 64 * word + at, visit.id, visit.first_lane + lane,
+                                   !has_holes)
+                    << at;
+        }
+    }
+    return dark;
+}
+
+/// Triangles that have the single texel on one side, one by one, with a step in each lane: each at
+/// its own steps alone.
+HWY_INLINE void cast_each(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
+                          std::uint32_t lanes, const Coefficients<true>& coefficients) {
+    const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
+    const TriangleTerms::Stored stored(coefficients);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        const TriangleTerms terms(stored, lane);
+        const bool has_holes = (masked >> lane & 1) != 0;
+        const int first = static_cast<int>(seen.first_of_each[lane]);
+        const int last = static_cast<int>(seen.last_of_each[lane]);
+        int gain = 0;
+        for (int word = first / 64; word <= last / 64; ++word) {
+            const std::uint64_t open = walk.open_steps(word, first, last);
+            const std::uint64_t dark = dark_steps(walk, visit, lane, terms, has_holes, word, open);
+            walk.open[word] &= ~dark;
+            gain += std::popcount(dark);
+        }
+        // The hint leaf has no triangles with holes.
+        if (!has_holes && gain >= kLeastSingleGain)
+            walk.credit(visit.id, visit.first_lane + lane, gain);
+    }
+}
+
+/// Where a single texel has fewer open steps than this, testing all triangles of a register at each
+/// takes less time than testing one by one at a register of steps.
+inline constexpr int kManySteps = 24;
+
+HWY_INLINE bool has_many_open_steps(const Walk& walk, const SeenTriangles& seen) {
+    int count = 0;
+    for (int word = seen.first_step / 64; word <= seen.last_step / 64; ++word)
+        count += std::popcount(walk.open_steps(word, seen.first_step, seen.last_step));
+    return count >= kManySteps;
+}
+
 /// The same for a single texel, which most steps leave no doubt about: without a branch that
-/// depends on whether they are dark.
+/// depends on whether they are dark. At many steps, each triangle for itself.
 HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
                              Lanes lanes, const Coefficients<true>& coefficients) {
-    constexpr int kLeastGain = 4;  // steps that make a triangle worth trying first
+    if (seen.has_steps_of_each && has_many_open_steps(walk, seen)) {
+        cast_each(walk, visit, seen, bits_of(lanes), coefficients);
+        return;
+    }
     const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
     const Lanes solid = hn::And(lanes, lanes_of(~masked));
     alignas(64) std::int32_t gains[kLanes] = {};
@@ -195,7 +314,8 @@ HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTrian
     }
     if (any == 0) return;
     for (int lane = 0; lane < kLanes; ++lane) {
-        if (gains[lane] >= kLeastGain) walk.credit(visit.id, visit.first_lane + lane, gains[lane]);
+        if (gains[lane] >= kLeastSingleGain)
+            walk.credit(visit.id, visit.first_lane + lane, gains[lane]);
     }
 }
 

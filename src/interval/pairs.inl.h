@@ -38,11 +38,6 @@ struct Plane {
     }
 };
 
-/// The texels that are surely hit, and those that may be.
-struct Hits {
-    std::uint64_t sure = 0, possible = 0;
-};
-
 template <bool kMixed, int kRegisters>
 HWY_INLINE Hits hits_of(const Tile& tile, const float* terms, int first_texel) {
     const Plane plane(terms);
