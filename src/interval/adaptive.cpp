@@ -1,23 +1,19 @@
 #include "interval/adaptive.h"
 
+#include "base/thread_time.h"
+
 #include <algorithm>
-#include <chrono>
 
 namespace gnomon::interval {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using trace::Receiver;
 
 /// A square of a Z-order curve, of which all tiles are squares.
 constexpr std::size_t kGroup = TileTracer::kMaxTexels;
 /// Fewer receivers take too little time to be told from the clock's own.
 constexpr std::size_t kLeastTimed = 16;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 }  // namespace
 
@@ -45,9 +41,9 @@ AdaptiveTracer::AdaptiveTracer(const Tree& tree, const DayPath& path)
 
 /// Seconds for a receiver.
 double AdaptiveTracer::seconds(Part part, int size) {
-    const auto start = Clock::now();
+    const double start = thread_seconds();
     tracer_.trace(part.receivers, size, part.masks);
-    return seconds_since(start) / static_cast<double>(part.size());
+    return (thread_seconds() - start) / static_cast<double>(part.size());
 }
 
 /// False when some tiles were late.
@@ -72,9 +68,9 @@ void AdaptiveTracer::trace_group(Part group) {
     double smaller_s = 0.0;
     if (trial == TileSize::Trial::smaller)
         smaller_s = seconds(group.first(kLeastTimed), size_.smaller_size());
-    const auto start = Clock::now();
+    const double start = thread_seconds();
     if (!trace_tiles(group)) return;  // the size may be another
-    const double s = seconds_since(start) / static_cast<double>(group.size());
+    const double s = (thread_seconds() - start) / static_cast<double>(group.size());
     size_.took(s);
     if (trial == TileSize::Trial::smaller) {
         size_.tried(trial, smaller_s, s);
@@ -87,13 +83,13 @@ void AdaptiveTracer::trace_group(Part group) {
 double AdaptiveTracer::larger_seconds(Part group, double s) {
     const auto size = static_cast<std::size_t>(size_.larger_size());
     const Part tried = group.first(std::max(size, kLeastTimed));
-    const auto start = Clock::now();
+    const double start = thread_seconds();
     for (Part rest = tried; rest.size() > 0;) {
         const Part tile = rest.take(size);
         const double most_s = s * static_cast<double>(tile.size());
         if (!tracer_.trace_within(tile.receivers, tile.masks, most_s)) return 2.0 * s;
     }
-    return seconds_since(start) / static_cast<double>(tried.size());
+    return (thread_seconds() - start) / static_cast<double>(tried.size());
 }
 
 void AdaptiveTracer::trace(std::span<const Receiver> receivers, std::span<std::uint64_t> masks) {

@@ -1,5 +1,6 @@
 #include "interval/tile.h"
 
+#include "base/thread_time.h"
 #include "interval/exact.h"
 #include "interval/mask.h"
 #include "interval/walk.h"
@@ -303,12 +304,17 @@ private:
     double corner_error_m_;
 };
 
-/// In so many seconds; 0 = none.
+Clock::time_point time_after(double s) {
+    return Clock::now() +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+/// In so many seconds of the thread; 0 = none. They last at least as long by the wall.
 void set_deadline(Walk& walk, double most_s) {
     walk.has_deadline = most_s > 0.0;
     if (!walk.has_deadline) return;
-    const std::chrono::duration<double> most(most_s);
-    walk.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(most);
+    walk.deadline_s = thread_seconds() + most_s;
+    walk.earliest_late = time_after(most_s);
 }
 
 /// How many of the first look the same way; a hole in the chart ends the tile.
@@ -339,8 +345,11 @@ void write_masks(Walk& walk, std::span<std::uint64_t> masks) {
 
 }  // namespace
 
-bool is_late(const Walk& walk) {
-    return Clock::now() > walk.deadline;
+bool is_late(Walk& walk) {
+    if (Clock::now() <= walk.earliest_late) return false;
+    const double left_s = walk.deadline_s - thread_seconds();
+    walk.earliest_late = time_after(left_s);
+    return left_s < 0.0;
 }
 
 std::uint64_t blocked_texels(const Walk& walk, std::uint64_t texels, int step, std::int32_t leaf,

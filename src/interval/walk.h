@@ -138,7 +138,9 @@ struct Walk {
 
     /// Of the walk, which then ends unfinished; never if it is not to be looked at.
     bool has_deadline = false;
-    std::chrono::steady_clock::time_point deadline;
+    double deadline_s = 0.0;  ///< of thread_seconds()
+    /// Not late before this, by a clock that takes less to read.
+    std::chrono::steady_clock::time_point earliest_late;
 
     Leaf hint_leaf = Leaf::empty();  ///< no triangles with holes
     LeafIds hint_ids;
@@ -211,7 +213,7 @@ struct Walk {
 /// came first: then what is dark is dark, and what is lit is not known.
 bool walk_tree(Walk& walk);
 
-bool is_late(const Walk& walk);
+bool is_late(Walk& walk);
 
 /// The instruction sets that walk_tree() is compiled for, as bits HWY_AVX2 and so on.
 std::int64_t walk_targets();
