@@ -165,8 +165,14 @@ void set_heights(Tile& tile, const Tree& tree, std::span<const Receiver> receive
 
 /// The axes of the tile; a single receiver has none.
 void set_frame(Tile& tile, std::span<const DVec3> origins, DVec3 normal) {
-    const Rectangle around = origins.size() > 1 ? rectangle_around(origins, normal)
-                                                : Rectangle{origins[0], DVec3(0.0), DVec3(0.0)};
+    Rectangle around{origins[0], DVec3(0.0), DVec3(0.0)};
+    if (origins.size() > 1) {
+        around = rectangle_around(origins, normal);
+        // The centre is stored as floats: no receiver is to have a coordinate beyond 1 for that.
+        const double rounding_m = 2.0 * kUnitRoundoff * sum_of_magnitudes(around.center);
+        around.half_u += rounding_m * glm::normalize(around.half_u);
+        around.half_v += rounding_m * glm::normalize(around.half_v);
+    }
     store(tile.center_m, around.center);
     store(tile.u_axis_m, around.half_u);
     store(tile.v_axis_m, around.half_v);
