@@ -27,16 +27,10 @@ layout(set = 0, binding = 0) uniform sampler2D depths;
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D normals;
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D visibility;
 layout(set = 0, binding = 3) uniform sampler2DArray map;
-layout(set = 0, binding = 4, scalar) uniform Frame {
-    MapFrame frame;
-};
+layout(set = 0, binding = 4, scalar) uniform Frame { MapFrame frame; };
 layout(set = 0, binding = 5) uniform sampler2DArray bounds;
-layout(set = 0, binding = 6, scalar) readonly buffer Blocks {
-    uint blocks[];
-};
-layout(push_constant, scalar) uniform Push {
-    MapLookupPush push;
-};
+layout(set = 0, binding = 6, scalar) readonly buffer Blocks { uint blocks[]; };
+layout(push_constant, scalar) uniform Push { MapLookupPush push; };
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
 const float kLeastDepth = 1e-12;
@@ -49,9 +43,8 @@ struct Layer {
     float index;
 };
 
-// The last layer that begins before the receiver, or the one along whose axis it is farthest. All
-// are read and one is chosen, number by number: an index that differs between pixels would be
-// followed pixel by pixel.
+// The last layer that begins before the receiver, or the one along whose axis it is farthest. All are read
+// and one is chosen, number by number: an index that differs between pixels would be followed pixel by pixel.
 Layer layer_of(float depth, vec3 p_es, float noise) {
     Layer layer = Layer(frame.layers[push.first_layer], float(push.first_layer));
     float blended_depth = depth * (1.0 - frame.blend * noise);  // as if up to so much farther away
@@ -66,8 +59,7 @@ Layer layer_of(float depth, vec3 p_es, float noise) {
         layer.map.w = mix(layer.map.w, next.w, bvec4(chosen));
         layer.map.steps = mix(layer.map.steps, next.steps, bvec3(chosen));
         layer.map.bias_scale = chosen ? next.bias_scale : layer.map.bias_scale;
-        layer.map.space.tangents =
-            mix(layer.map.space.tangents, next.space.tangents, bvec4(chosen));
+        layer.map.space.tangents = mix(layer.map.space.tangents, next.space.tangents, bvec4(chosen));
         layer.map.space.reach = chosen ? next.space.reach : layer.map.space.reach;
         layer.index = chosen ? float(push.first_layer + i) : layer.index;
     }
@@ -82,10 +74,10 @@ float lit_by_blurred(MapPoint point) {
     ivec2 i = ivec2(corner);
     ivec2 j = min(i + 1, int(frame.size_texels) - 1);
     int layer = int(point.layer);
-    vec4 row0 =
-        mix(texelFetch(map, ivec3(i, layer), 0), texelFetch(map, ivec3(j.x, i.y, layer), 0), f.x);
-    vec4 row1 =
-        mix(texelFetch(map, ivec3(i.x, j.y, layer), 0), texelFetch(map, ivec3(j, layer), 0), f.x);
+    vec4 row0 = mix(texelFetch(map, ivec3(i, layer), 0),
+                    texelFetch(map, ivec3(j.x, i.y, layer), 0), f.x);
+    vec4 row1 = mix(texelFetch(map, ivec3(i.x, j.y, layer), 0),
+                    texelFetch(map, ivec3(j, layer), 0), f.x);
     vec4 content = mix(row0, row1, f.y);
     float along = distance_along(point.space, clamp(point.depth, 0.0, kNearest));
     MapReadingFrame reading = frame.reading;
@@ -111,8 +103,7 @@ mat2 texels_across_light(TexelAt texel, vec3 to_light) {
     vec3 aside = abs(to_light.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
     vec3 across = normalize(cross(to_light, aside));
     vec3 other = cross(to_light, across);
-    return mat2(dot(texel.u, across), dot(texel.v, across), dot(texel.u, other),
-                dot(texel.v, other));
+    return mat2(dot(texel.u, across), dot(texel.v, across), dot(texel.u, other), dot(texel.v, other));
 }
 
 // How far PCSS searches, in metres across the light: no penumbra of the sun is wider.
@@ -123,9 +114,9 @@ float pcss_search_m(MapPoint point, TexelAt texel, vec3 to_light) {
     return kLightKind == kLightDirectional ? min(search_m, most_m) : most_m;
 }
 
-// The map's ellipse of a disc of this radius, no narrower than a texel whichever way texels are
-// long: a matrix to it from the unit disc. As P. Heckbert, "Fundamentals of Texture Mapping and
-// Image Warping", 1989, adds the footprint of a texel to that of a pixel.
+// The map's ellipse of a disc of this radius, no narrower than a texel whichever way texels are long:
+// a matrix to it from the unit disc. As P. Heckbert, "Fundamentals of Texture Mapping and Image Warping",
+// 1989, adds the footprint of a texel to that of a pixel.
 mat2 at_least_a_texel(float radius_m, mat2 texels_per_m) {
     mat2 spread = radius_m * texels_per_m;
     mat2 squared = spread * transpose(spread) + mat2(1.0);
@@ -134,8 +125,7 @@ mat2 at_least_a_texel(float radius_m, mat2 texels_per_m) {
     return mat2(along_u, shear, 0.0, sqrt(max(squared[1][1] - shear * shear, 1.0)));
 }
 
-// The light's own penumbra: as wide as the light looks from what hides it, in metres across the
-// light.
+// The light's own penumbra: as wide as the light looks from what hides it, in metres across the light.
 float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn, uint taps) {
     float most_m = frame.reading.most_texels * texel.side_m;
     float depth_per_m = max(dot(texel.z, to_light), 1e-20);
@@ -198,8 +188,7 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
             return lit_disc(map, size, frame.bias, point, mat2(frame.reading.radius_texels),
                             gradient_noise(pixel), taps);
         case kFilterFootprint:
-            return lit_footprint(map, size, frame.bias, point, footprint, gradient_noise(pixel),
-                                 taps);
+            return lit_footprint(map, size, frame.bias, point, footprint, gradient_noise(pixel), taps);
         case kFilterPcss:
             return lit_pcss(point, texel, to_light, gradient_noise(pixel), taps);
     }
@@ -210,8 +199,7 @@ float filtered(MapPoint point, TexelAt texel, vec3 to_light, mat2 footprint, uve
 vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float depth) {
     // Two points of the next pixel's ray.
     vec3 far = receiver_position(frame.receivers.es_from_clip, next, frame.receivers.size, depth);
-    vec3 near =
-        receiver_position(frame.receivers.es_from_clip, next, frame.receivers.size, 1.5 * depth);
+    vec3 near = receiver_position(frame.receivers.es_from_clip, next, frame.receivers.size, 1.5 * depth);
     vec3 along = far - near;
     float slope = dot(normal_ws, along);
     float least = 1e-3 * length(along);
@@ -222,17 +210,17 @@ vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float d
 }
 
 // `known`: what is known beforehand, or kNotProven.
-float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint, uvec2 pixel,
-                 float known) {
+float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint,
+                 uvec2 pixel, float known) {
     vec4 p = vec4(p_es, 1.0);
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
     float w = kAffine != 0u ? 1.0 : dot(layer.map.w, p);
     uvz /= w;
-    MapPoint point =
-        MapPoint(frame.size_texels * uvz.xy, uvz.z, frame.bias.receiver_plane * texel.gradient,
-                 frame.bias.cone * length(texel.gradient),
-                 kMaxFall * texel.side_m * max(dot(texel.z, to_light), 0.0), kNearest, layer.index,
-                 layer.map.space);
+    MapPoint point = MapPoint(frame.size_texels * uvz.xy, uvz.z,
+                              frame.bias.receiver_plane * texel.gradient,
+                              frame.bias.cone * length(texel.gradient),
+                              kMaxFall * texel.side_m * max(dot(texel.z, to_light), 0.0), kNearest,
+                              layer.index, layer.map.space);
     float lit = known;
     if (kProof != kProofNone) {
         float proven = proven_lit(bounds, frame.size_texels, frame.bounded_texels, frame.bias,
@@ -249,8 +237,8 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
     // Weights sum to 1 but for rounding: what is all but lit or dark is.
     precise float rounded = (1.0 + 2.0 * kRounding) * lit - kRounding;
     lit = clamp(rounded, 0.0, 1.0);
-    // Maps that are chosen among by their axis hold all receivers, and so do the sun's; what the
-    // bias moves across their border is looked up there.
+    // Maps that are chosen among by their axis hold all receivers, and so do the sun's; what the bias moves
+    // across their border is looked up there.
     if (kLightKind == kLightDirectional || kLayerChoice == kChooseByAxis) return lit;
     bool inside = w > 0.0 && all(lessThanEqual(abs(uvz.xy - 0.5), vec2(0.5)));
     return inside ? lit : 1.0;
@@ -263,20 +251,20 @@ uvec2 pixel_looked_at() {
     return kSurveyBlock_px * uvec2(block & 0xffffu, block >> 16) + gl_LocalInvocationID.xy;
 }
 
-// Without branches: software drivers walk through both sides of each, and read constants and
-// textures slowly within.
+// Without branches: software drivers walk through both sides of each, and read constants and textures
+// slowly within.
 void main() {
     uvec2 pixel = pixel_looked_at();
     ivec2 at = ivec2(min(pixel, frame.receivers.size - 1u));
     float depth = texelFetch(depths, at, 0).x;
-    vec3 p_es = receiver_position(frame.receivers.es_from_clip, pixel, frame.receivers.size,
-                                  max(depth, kLeastDepth));
+    vec3 p_es = receiver_position(frame.receivers.es_from_clip, pixel, frame.receivers.size, max(depth, kLeastDepth));
     vec3 normal_ws = unpack_unit_vector(imageLoad(normals, at).x);
     vec3 to_light = to_light_ws(frame.receivers.light, p_es);
     if (kLightKind != kLightDirectional) to_light = normalize(to_light);  // which is that already
     Layer layer = layer_of(depth, p_es, gradient_noise(pixel));
-    TexelAt texel = kAffine != 0u ? affine_texel(layer.map, frame.size_texels, normal_ws, to_light)
-                                  : projective_texel(layer.map, frame.size_texels, p_es, normal_ws);
+    TexelAt texel = kAffine != 0u
+                        ? affine_texel(layer.map, frame.size_texels, normal_ws, to_light)
+                        : projective_texel(layer.map, frame.size_texels, p_es, normal_ws);
     MapBias bias = frame.bias;
     bias.constant *= layer.map.bias_scale;
     vec3 biased_es = biased_position(p_es, normal_ws, to_light, texel, bias);
