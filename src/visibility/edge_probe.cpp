@@ -20,7 +20,8 @@ constexpr int kPoints = 64;
 /// Places that are looked at together: enough for all threads.
 constexpr std::size_t kBatch = 1024;
 
-/// Of the light on a plane, at 89.4°: steeper ones are followed by no filter (map_bias.glsl).
+/// Of the light on a plane, at 89.4°: steeper ones are followed by no filter, which look up what is
+/// beside them instead (map_bias.glsl).
 constexpr float kMinCosine = 0.01f;
 
 /// Of the reach: what hides a point of the plane less far above it may be a neighbour on a surface
@@ -88,7 +89,8 @@ private:
     }
 
     /// Where light is looked for: beside the receiver, where its shadow is thin, and on its plane,
-    /// where the shadow ends. Shadow: on the plane alone, and a little above.
+    /// where the shadow ends. Shadow: on the plane alone, and a little above; beside a plane that
+    /// the light grazes, on the side that it lights.
     void add_points(const Place& place, bool lit, std::vector<trace::Receiver>& points) const {
         const trace::Receiver& receiver = receivers_[place.pixel];
         const auto reach_m = static_cast<float>(place.reach_m);
@@ -97,20 +99,23 @@ private:
         const Vec3 u_ws = glm::normalize(glm::cross(aside, to_light));
         const Vec3 v_ws = glm::cross(to_light, u_ws);
         const float cosine = glm::dot(receiver.normal_ws, to_light);
-        const auto add = [&](Vec3 offset_ws) {
+        const bool is_grazed = cosine < kMinCosine;
+        const auto add = [&](Vec3 offset_ws, Vec3 normal_ws) {
             points.push_back(receiver);
             points.back().position_ws += offset_ws;
+            points.back().normal_ws = normal_ws;
         };
         for (int i = 0; i < kPoints; ++i) {
             const Vec2 at_m = reach_m * on_disc(i);
             const Vec3 offset_ws = at_m.x * u_ws + at_m.y * v_ws;
-            if (lit) add(offset_ws);
-            if (cosine < kMinCosine) {
-                points.emplace_back();  // no receiver
-                continue;
-            }
-            const float along_m = -glm::dot(receiver.normal_ws, offset_ws) / cosine;
-            add(offset_ws + (along_m + (lit ? 0.0f : kRaised * reach_m)) * to_light);
+            const float height_m = glm::dot(receiver.normal_ws, offset_ws);
+            // Beside the receiver is no surface that could turn away from the light.
+            if (lit || is_grazed) add(lit || height_m > 0.0f ? offset_ws : -offset_ws, to_light);
+            const float above_m = lit ? 0.0f : kRaised * reach_m;
+            if (!is_grazed)
+                add(offset_ws + (above_m - height_m / cosine) * to_light, receiver.normal_ws);
+            else if (lit)
+                points.emplace_back();  // no receiver: places of one call have as many points
         }
     }
 

@@ -92,6 +92,24 @@ TEST(EdgeProbe, ReachesAcrossTheLight) {
     EXPECT_FALSE(dark.finds_light(0.08));
 }
 
+// The ground's horizon hides the sun's middle, but nothing does that stands there.
+TEST(EdgeProbe, FindsLightBesideAReceiverThatTheMiddleIsBehind) {
+    const DirectionalLight setting{.to_light_ws = glm::normalize(Vec3(1, -0.002f, 0)),
+                                   .angular_diameter_rad = radians(0.53f)};
+    EXPECT_TRUE(Probed({ground()}, {4.9f, 0, 0}, setting).finds_light(0.1));
+    const Mesh wall = quad({5, -1, kHalfWidth_m}, {0, 0, -2.0f * kHalfWidth_m}, {0, 2, 0});
+    EXPECT_FALSE(Probed({ground(), wall}, {4.9f, 0, 0}, setting).finds_light(0.1));
+}
+
+// No texel shows a plane that the light grazes: those around it show what is beside it.
+TEST(EdgeProbe, FindsShadowBesideAPlaneThatTheLightGrazes) {
+    const DirectionalLight low{.to_light_ws = glm::normalize(Vec3(1, 0.005f, 0))};
+    const Mesh beam = quad({1, 0.3f, kHalfWidth_m}, {0, 0, -2.0f * kHalfWidth_m}, {0, 0.2f, 0});
+    const Probed below_beam({ground(), beam}, {0, 0, 0}, low);
+    EXPECT_FALSE(below_beam.finds_shadow(0.25));  // though the ground's other side is dark
+    EXPECT_TRUE(below_beam.finds_shadow(0.45));
+}
+
 TEST(EdgeProbe, KnowsNoMiddleOfAreas) {
     Progress silent;
     const auto tracer =
