@@ -243,7 +243,11 @@ INSTANTIATE_TEST_SUITE_P(All, LargerScene,
                                          SceneFile{"game_map", "zdm2-game-map/zdm2.obj"},
                                          SceneFile{"voxel_castle", "lost-empire/lost_empire.obj"},
                                          SceneFile{"pine", "scrub-pine/scrubPine.obj"},
-                                         SceneFile{"ship", "dutch-ship/dutch_ship_medium_1k.gltf"}),
+                                         SceneFile{"ship", "dutch-ship/dutch_ship_medium_1k.gltf"},
+                                         SceneFile{"monkey", "suzanne/Suzanne.gltf"},
+                                         SceneFile{"figure", "cesium-man/CesiumMan.glb"},
+                                         SceneFile{"helmet", "flight-helmet/FlightHelmet.gltf"},
+                                         SceneFile{"teapot", "teapot/teapot.obj"}),
                          [](const auto& test) { return test.param.label; });
 
 }  // namespace
