@@ -57,8 +57,10 @@ Vec2 on_disc(int point) {
 class RayEdgeProbe : public EdgeProbe {
 public:
     RayEdgeProbe(std::shared_ptr<const trace::Tracer> tracer,
-                 std::vector<trace::Receiver> receivers, const Light& middle)
-        : tracer_(std::move(tracer)), receivers_(std::move(receivers)), middle_(middle) {}
+                 std::span<const trace::Receiver> receivers, const Light& middle)
+        : tracer_(std::move(tracer)),
+          receivers_(receivers.begin(), receivers.end()),
+          middle_(middle) {}
 
     std::vector<std::uint8_t> find(std::span<const Place> places, bool lit) const override {
         std::vector<std::uint8_t> found;
@@ -127,11 +129,11 @@ private:
 }  // namespace
 
 std::shared_ptr<const EdgeProbe> make_edge_probe(std::shared_ptr<const trace::Tracer> tracer,
-                                                 std::vector<trace::Receiver> receivers,
+                                                 std::span<const trace::Receiver> receivers,
                                                  const Light& light) {
     const std::optional<Light> middle = middle_of(light);
     if (!middle) return nullptr;
-    return std::make_shared<RayEdgeProbe>(std::move(tracer), std::move(receivers), *middle);
+    return std::make_shared<RayEdgeProbe>(std::move(tracer), receivers, *middle);
 }
 
 }  // namespace gnomon

@@ -6,15 +6,15 @@
 #include "trace/tracer.h"
 
 #include <memory>
-#include <vector>
+#include <span>
 
 namespace gnomon {
 
 /// The truth's edges by rays to the middle of the light, from points around receivers. Null for
 /// lights whose middle does not stand for them: areas. `receivers` are those of the picture's
-/// pixels.
+/// pixels; they are copied.
 std::shared_ptr<const EdgeProbe> make_edge_probe(std::shared_ptr<const trace::Tracer> tracer,
-                                                 std::vector<trace::Receiver> receivers,
+                                                 std::span<const trace::Receiver> receivers,
                                                  const Light& light);
 
 }  // namespace gnomon

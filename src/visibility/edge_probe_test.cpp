@@ -26,10 +26,10 @@ class Probed {
 public:
     Probed(std::vector<Mesh> meshes, Vec3 p_ws, const Light& light) {
         Progress silent;
-        probe_ =
-            make_edge_probe(std::make_shared<const trace::Tracer>(
-                                Scene(raster::scene_data(std::move(meshes))), false, silent),
-                            {{.position_ws = p_ws, .normal_ws = {0, 1, 0}, .id = {0, 0}}}, light);
+        const trace::Receiver receiver{.position_ws = p_ws, .normal_ws = {0, 1, 0}, .id = {0, 0}};
+        probe_ = make_edge_probe(std::make_shared<const trace::Tracer>(
+                                     Scene(raster::scene_data(std::move(meshes))), false, silent),
+                                 std::span(&receiver, 1), light);
     }
     bool finds_light(double reach_m) const { return find(reach_m, true); }
     bool finds_shadow(double reach_m) const { return find(reach_m, false); }
