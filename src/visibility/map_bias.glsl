@@ -61,11 +61,11 @@ TexelAt projective_texel(MapLayerFrame layer, float size_texels, vec3 p_es, vec3
                    near ? length(m) : 0.0, near ? gradient : vec2(0.0), u, v, z);
 }
 
-// How far a receiver is moved off a plane that the light grazes: a texel from 89.4° on, nothing up to 88.9°.
+// How far a receiver is moved off a plane that the light grazes, from 89.4° on, and all of it from 89.7° on.
 // No texel shows such a wall; those around it show its roof or the ground before it, which is as lit as it is.
 // Maps need no wider margin for it: what hides such a wall hides what is just before it.
-float grazed_offset_m(vec3 normal_ws, float cosine, TexelAt texel) {
-    float grazed_texels = clamp(2.0 - kMaxGradientSlope * cosine, 0.0, 1.0);
+float grazed_offset_m(vec3 normal_ws, float cosine, TexelAt texel, MapBias bias) {
+    float grazed_texels = bias.grazed_texels * clamp(2.0 - 2.0 * kMaxGradientSlope * cosine, 0.0, 1.0);
     float texels_per_m = length(vec2(dot(texel.u, normal_ws), dot(texel.v, normal_ws)));
     return min(grazed_texels / max(texels_per_m, 1e-20), texel.side_m);
 }
@@ -75,7 +75,7 @@ vec3 biased_position(vec3 p_es, vec3 normal_ws, vec3 to_light, TexelAt texel, Ma
     float offset_m = bias.reach_texels * texel.offset_m;
     float cosine = dot(normal_ws, to_light);
     float off_plane_m = bias.normal_offset * offset_m +
-                        bias.receiver_plane * grazed_offset_m(normal_ws, cosine, texel);
+                        grazed_offset_m(normal_ws, cosine, texel, bias);
     float to_light_m = bias.constant * texel.side_m +
                        bias.slope * offset_m / max(cosine, 1.0 / kMaxSlope);
     return p_es + off_plane_m * normal_ws + to_light_m * to_light;

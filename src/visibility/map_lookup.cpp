@@ -83,6 +83,13 @@ float cone(const ReadingOptions& reading, const BiasOptions& bias) {
            static_cast<float>(bias.bias_slope + bias.normal_offset);
 }
 
+/// A texel's centre is up to half a diagonal away from the receiver, and is to be before the wall.
+/// Wider filters read both sides alike, or are half lit by what is before it.
+float grazed_texels(const ReadingOptions& reading, const BiasOptions& bias) {
+    constexpr float kReads = 1.25f;
+    return bias.receiver_plane ? std::max(0.0f, kReads - least_radius_texels(reading)) : 0.0f;
+}
+
 }  // namespace
 
 float filter_radius_texels(const ReadingOptions& reading) {
@@ -166,6 +173,7 @@ MapLookup::MapLookup(const gpu::Device& device, const ReadingOptions& reading,
             .slope = static_cast<float>(bias.bias_slope),
             .normal_offset = static_cast<float>(bias.normal_offset),
             .cone = cone(reading, bias),
+            .grazed_texels = grazed_texels(reading, bias),
             .distance_scale = static_cast<float>(reading.distance_scale),
             .distance_offset = static_cast<float>(reading.distance_offset)},
       nearest_(device, {}),

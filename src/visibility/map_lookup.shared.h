@@ -52,6 +52,7 @@ struct MapBias {
     float slope;            // times the depth that a plane gains over the filter's reach
     float normal_offset;    // times the offset that frees a plane from the filter's reach
     float cone;             // of a plane's gain of depth, per texel that a tap is away
+    float grazed_texels;    // of the map, off a plane that the light grazes
     float distance_scale;   // a receiver's stored distance is multiplied by this,
     float distance_offset;  // and less by this
 };
