@@ -35,9 +35,11 @@ VkFormat format_of(MapContent content) {
 shared::MapSpace map_space(const LightFit& fit) {
     shared::MapSpace space{};
     if (!(fit.far_m > 0.0)) return space;
-    // x and y of the map are (right - middle * along) / half over the distance along the axis.
     const glm::dmat4 rows = glm::transpose(fit.clip_from_world);
     const DVec3 along(rows[3]);
+    space.reach = static_cast<float>(rows[2].w / (glm::length(along) * fit.far_m));
+    if (!fit.is_view) return space;
+    // x and y of the map are (right - middle * along) / half over the distance along the axis.
     glm::dvec2 half, middle;
     for (int axis = 0; axis < 2; ++axis) {
         const DVec3 row(rows[axis]);
@@ -46,7 +48,6 @@ shared::MapSpace map_space(const LightFit& fit) {
         middle[axis] = -on_axis * half[axis];
     }
     space.tangents = Vec4(half.x, half.y, middle.x, middle.y);
-    space.reach = static_cast<float>(rows[2].w / fit.far_m);
     return space;
 }
 

@@ -34,7 +34,7 @@ std::vector<glm::dvec4> visible_planes(const Camera& camera, Extent size, const 
 /// How far a box reaches to the inner side of such a plane, in metres.
 double reach(const glm::dvec4& plane, const Box3& box);
 
-/// Texels along a side of a map between its margins.
+/// Texels along a side of a map between its margins; half of it at least.
 double used_texels(unsigned size_texels, float margin_texels);
 
 /// From a texel to the next ones, in metres of the world, across the light.
@@ -51,6 +51,9 @@ struct LightFit {
     /// they are not seen.
     bool clamps_near = true;
     double far_m = 0.0;  ///< of a light within the world: to the farthest of the scene; else 0
+    /// Of such a light: x and y are at right angles, over the distance along the axis. Else
+    /// contents hold distances along the axis, not from the light.
+    bool is_view = false;
 
     /// Side of a texel at a point of the world, in metres, across the light; the longer one where
     /// the map stretches it. 0 behind a light.

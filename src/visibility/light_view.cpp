@@ -33,14 +33,14 @@ DVec3 up_for(DVec3 direction) {
     return std::abs(direction.y) > 0.99 ? DVec3(0, 0, -1) : DVec3(0, 1, 0);
 }
 
+}  // namespace
+
 double farthest_m(const Box3& bounds, const DVec3& p_ws) {
     if (bounds.empty()) return 1.0;
     const DVec3 away =
         glm::max(glm::abs(DVec3(bounds.min) - p_ws), glm::abs(DVec3(bounds.max) - p_ws));
     return std::max(glm::length(away), 1e-6);
 }
-
-}  // namespace
 
 std::array<DVec4, 4> LightView::planes() const {
     std::array<DVec4, 4> result;
@@ -148,6 +148,7 @@ LightFit fit_view(const LightView& view, const Box3& bounds, unsigned size_texel
     fit.size_texels = size_texels;
     fit.affine = false;
     fit.far_m = farthest_m(bounds, view.position_ws);
+    fit.is_view = true;
     fit.clamps_near =
         false;  // what all but touches the light, as a ceiling around it, hides nothing
     return fit;

@@ -40,6 +40,9 @@ std::vector<LightView> tetrahedron_views(DVec3 position_ws);
 /// it.
 LightView fitted(const LightView& view, std::span<const DVec3> receivers_ws);
 
+/// From a point to the farthest of the scene of these bounds; 1 where that is empty.
+double farthest_m(const Box3& bounds, const DVec3& p_ws);
+
 /// What is nearer to the light than this is taken to touch it, and casts no shadow.
 double near_light_m(const Box3& bounds);
 

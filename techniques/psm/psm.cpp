@@ -70,10 +70,12 @@ glm::dvec4 height_row(const psm::Projection& projection, const glm::dvec4& light
 constexpr double kLeastAlong = 1e-9;
 
 /// Depth for a light within the world, as of a view from it: the inverse of the distance from it.
-void set_depth_from_light(LightFit& fit, const psm::Projection& face, const Box3& bounds) {
+void set_depth_from_light(LightFit& fit, const psm::Projection& face, DVec3 light_ws,
+                          const Box3& bounds) {
     const double near_along = near_light_m(bounds) * glm::length(DVec3(face.w));
     for (int column = 0; column < 4; ++column)
         fit.clip_from_world[column].z = column < 3 ? 0.0 : near_along;
+    fit.far_m = farthest_m(bounds, light_ws);
     fit.clamps_near = false;
 }
 
@@ -167,7 +169,7 @@ private:
             layer.needed = needed;
             return layer;
         }
-        set_depth_from_light(fit, face, frame.scene.bounds());
+        set_depth_from_light(fit, face, DVec3(light_ws), frame.scene.bounds());
         return {{fit},
                 CasterVolume(fit, visible_planes(frame.camera, frame.size, seen.bounds, seen.range),
                              DVec3(light_ws)),
