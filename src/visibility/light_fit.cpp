@@ -241,7 +241,8 @@ double reach(const DVec4& plane, const Box3& box) {
 }
 
 double used_texels(unsigned size_texels, float margin_texels) {
-    return std::max(1.0, size_texels - 2.0 * static_cast<double>(margin_texels));
+    // Filters that reach farther than a quarter of the map read its border again.
+    return std::max(0.5 * size_texels, size_texels - 2.0 * static_cast<double>(margin_texels));
 }
 
 // A step across the light moves the map's image by the 2x3 matrix of the gradients of its

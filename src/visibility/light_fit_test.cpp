@@ -162,6 +162,16 @@ TEST(FitDirectional, HoldsWhatIsSeenWithinItsMargin) {
     }
 }
 
+// A filter of a quarter of a small map left it one texel, and nothing hid anything.
+TEST(FitDirectional, LeavesHalfOfAMapToItsReceivers) {
+    EXPECT_EQ(used_texels(512, 16.0f), 480.0);
+    EXPECT_EQ(used_texels(512, 257.0f), 256.0);
+    const std::vector<DVec3> receivers_ws{{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}, {0, 0, 1}};
+    const LightFit fit = fit_directional({.to_light_ws = {0, 1, 0}}, receivers_ws,
+                                         {{-1, 0, -1}, {1, 1, 1}}, 64, 100.0f);
+    EXPECT_NEAR(fit.texel_size_m({0, 0, 0}), std::sqrt(2.0f) / 32.0f, 1e-3f);
+}
+
 TEST(FitDirectional, IsNoLargerThanItMustBe) {
     Random random(4);
     for (unsigned i = 0; i < kViews; ++i) {
