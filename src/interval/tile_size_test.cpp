@@ -38,7 +38,7 @@ TEST(TileSize, FindsTheBestSoon) {
 
 TEST(TileSize, FollowsWhatIsBest) {
     TileSize size;
-    for (const int best : {1, 64, 4, 16, 1, 4, 64, 1}) {
+    for (const int best : {1, 64, 16, 1, 64, 1, 16, 1}) {
         for (int group = 0; group < 200; ++group)
             trace(size, best);
         EXPECT_EQ(size.size(), best);
@@ -56,7 +56,7 @@ TEST(TileSize, TilesThatAreLateGetMoreTimeOrBecomeSmaller) {
     EXPECT_EQ(size.size(), 16);
     EXPECT_GT(size.limit_s(), 100.0);
     size.was_late(100.0);
-    EXPECT_EQ(size.size(), 4);
+    EXPECT_EQ(size.size(), 1);
 }
 
 TEST(TileSize, TrialsBecomeFew) {
