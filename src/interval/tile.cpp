@@ -80,6 +80,27 @@ RangeTerms range_terms(const DayPath& path) {
     return terms;
 }
 
+/// Of the sun's directions. Boxes are wider than what they hold by some roundings of the reach of
+/// all, and no ray passes one farther away than a few reaches: so coordinates that are this small
+/// may as well be a little greater.
+void set_inverses(Walk& walk) {
+    constexpr float kLeast = 1e-9f;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int step = 0; step < walk.steps; ++step) {
+            const float along = walk.sun[axis][step];
+            walk.per_sun[axis][step] =
+                1.0f / std::copysign(std::max(std::abs(along), kLeast), along);
+        }
+    }
+    walk.same_signs_until[walk.steps - 1] = walk.steps - 1;
+    for (int step = walk.steps - 1; step-- > 0;) {
+        const bool is_same = std::ranges::all_of(walk.per_sun, [&](const float* inverses) {
+            return std::signbit(inverses[step]) == std::signbit(inverses[step + 1]);
+        });
+        walk.same_signs_until[step] = is_same ? walk.same_signs_until[step + 1] : step;
+    }
+}
+
 /// Around the receivers: its centre, and half of its sides.
 struct Rectangle {
     DVec3 center, half_u, half_v;
@@ -239,6 +260,7 @@ void open_steps(Walk& walk) {
         }
     }
     std::ranges::copy(walk.facing, walk.open);
+    walk.open[Walk::kMaxWords] = 0;
     // Also at steps that are not open, where nobody looks.
     std::fill_n(walk.lit, walk.steps, ~std::uint64_t{0} >> (kMaxTexels - walk.tile.texels));
 }
@@ -407,6 +429,7 @@ TileTracer::TileTracer(const Tree& tree, const DayPath& path) : walk_(std::make_
     for (int axis = 0; axis < 3; ++axis)
         walk_->sun[axis] = path.coordinates(axis);
     walk_->steps = path.steps();
+    set_inverses(*walk_);
     walk_->words = path.words();
     walk_->ranges = range_terms(path);
 }

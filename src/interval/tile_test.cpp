@@ -117,13 +117,91 @@ TEST(TileTracer, SaysTheSameWithAnyInstructions) {
     const Case c{trace::make_scene({{scattered(random, 300, 6.0f, 3.0f)}}), frame,
                  circle(frame, 0.3, -2.0, 2.0, 300),
                  receivers_on({-2, -1, 2}, {4, 0, 1}, {0, 0, -4}, 8)};
+    // Leaves above the receivers, seen at few steps.
+    const Case few{
+        trace::make_scene({{scattered(random, 1500, 4.0f, 0.3f), {trace::moved({0, 6, 0})}}}),
+        frame, circle(frame, 0.2, -0.9, 0.8, 20),
+        receivers_on({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 6)};
     const std::int64_t all = hwy::SupportedTargets();
     for (std::int64_t rest = walk_targets() & all; rest != 0; rest &= rest - 1) {
         const std::int64_t target = rest & -rest;
         hwy::GetChosenTarget().Update(target);
         expect_exact(c, hwy::TargetName(target));
+        expect_exact(few, hwy::TargetName(target));
     }
     hwy::GetChosenTarget().Update(all);
+}
+
+TEST(TileTracer, LeavesSeenAtFewSteps) {
+    // Small triangles over the receivers, at a few steps that are far apart beside them; the second
+    // mesh touches the receivers' plane and reaches below it.
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        Random random(seed);
+        const Mesh above = scattered(random, 1500, 4.0f, 0.3f);
+        const Mesh around = scattered(random, 300, 4.0f, 0.3f);
+        const Scene scene = trace::make_scene({{above, {trace::moved({0, 6, 0})}}, {around}});
+        for (const int steps : {1, 3, 40}) {
+            const Frame frame = frame_around(pole_at(0.84));
+            expect_exact({scene, frame, circle(frame, 0.2, -0.9, 0.8, steps),
+                          receivers_on({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 6)},
+                         fmt::format("seed {}, {} steps", seed, steps));
+        }
+    }
+}
+
+TEST(TileTracer, RaysAlongAxesAndTheSidesOfBoxes) {
+    // Suns on the frame's axes and next to them, their coordinates 0 of both signs; receivers are
+    // on lines along the axes through corners of walls, so that rays run in the sides of boxes.
+    const Frame frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    std::vector<DVec3> day;
+    for (const double x : {0.0, 1e-12, 1e-8}) {
+        for (const double z : {-0.0, 1e-10, -1e-7, 0.5}) {
+            day.insert(day.end(), {{x, 1, z}, {-x, 1, z}, {z, 1, -x}});
+        }
+    }
+    std::vector<Mat4> places;
+    for (int i = 0; i < 400; ++i) {
+        const auto at = static_cast<float>(i);
+        places.push_back(trace::moved(
+            {std::fmod(at, 20.0f), 1.0f + std::fmod(at, 7.0f), std::floor(at / 20.0f)}));
+    }
+    const Scene scene =
+        trace::make_scene({{trace::quad({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0.5f}), places}});
+    std::vector<Receiver> receivers;
+    for (int i = 0; i < 80; ++i) {
+        const auto at = static_cast<float>(i);
+        receivers.push_back({{std::floor(at / 4.0f), 0, 0.5f * std::fmod(at, 4.0f)},
+                             {0, 1, 0},
+                             {trace::kNoSurface, 0}});
+    }
+    expect_exact({scene, frame, day, receivers}, "along axes");
+}
+
+TEST(TileTracer, EdgesRightAboveReceivers) {
+    // A ceiling of a chessboard's squares, and receivers right below corners, edges and middles of
+    // squares when the sun is overhead: float cannot tell whether it is hit.
+    constexpr float kSide = 0.25f;
+    Mesh ceiling;
+    for (int i = 0; i < 400; ++i) {
+        if ((i / 20 + i) % 2 == 0) continue;
+        const auto x = static_cast<float>(i % 20), z = static_cast<float>(i / 20);
+        const auto first = static_cast<unsigned>(ceiling.positions.size());
+        for (const Vec3 corner : {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(1, 0, 0)})
+            ceiling.positions.push_back(kSide * (Vec3(x, 13.0f, z) + corner));
+        ceiling.triangles.push_back({first, first + 1, first + 2});
+        ceiling.triangles.push_back({first, first + 2, first + 3});
+    }
+    std::vector<Receiver> receivers;
+    for (int i = 0; i < 256; ++i) {
+        const Vec3 at(static_cast<float>(i % 16), 0.0f, static_cast<float>(i / 16));
+        receivers.push_back({0.5f * kSide * at, {0, 1, 0}, {trace::kNoSurface, 0}});
+    }
+    const Case c{trace::make_scene({{ceiling}}), frame_around(pole_at(0.84)),
+                 std::vector<DVec3>(5, DVec3(0.0, 1.0, 0.0)), receivers};
+    expect_exact(c, "overhead");
+    const int lit = lit_steps(by_tiles(c, 1));
+    EXPECT_GT(lit, 0);
+    EXPECT_LT(lit, 5 * 256);
 }
 
 /// A day of `steps` at the latitude of 48 degrees, on a scene with the Y axis up.
@@ -178,6 +256,27 @@ TEST(TileTracer, HolesLetLightThrough) {
     c.ignore_alpha = true;
     expect_exact(c, "solid");
     EXPECT_GT(lit_steps(masked), lit_steps(by_tiles(c, 64)) + 100);
+}
+
+TEST(TileTracer, SmallHolesSeenAtFewSteps) {
+    Texture fence;  // opaque columns, two texels apart
+    fence.size = {4, 1};
+    fence.rgba = {0, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0};
+    Material material;
+    material.base_color_texture = 0;
+    material.alpha_cutoff = 0.5f;
+    Random random(21);
+    std::vector<Mat4> places;
+    for (int i = 0; i < 300; ++i)
+        places.push_back(trace::moved(Vec3(0, 5, 0) + random.in_box(3.0f)));
+    const Scene scene = trace::make_scene(
+        {{trace::quad({0, 0, 0}, {0.6f, 0, 0}, {0, 0.2f, 0.4f}), places}}, material, {fence});
+    Case c = ordinary_day(scene, receivers_on({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 8), 40);
+    expect_exact(c, "masked");
+    const Masks masked = by_tiles(c, 1);
+    c.ignore_alpha = true;
+    expect_exact(c, "solid");
+    EXPECT_GT(lit_steps(masked), lit_steps(by_tiles(c, 1)) + 100);
 }
 
 TEST(TileTracer, AnyPathAroundAnyPole) {

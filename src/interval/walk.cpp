@@ -18,11 +18,14 @@
 //
 #include "interval/leaf.inl.h"
 #include "interval/pairs.inl.h"
+#include "interval/single.inl.h"
 #include "interval/walk.h"
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
@@ -59,84 +62,144 @@ HWY_INLINE void prefetch(const T& object) {
 
 /// Children of a node and the steps that can see them.
 struct Children {
-    alignas(64) float first[kWidth], last[kWidth];
+    alignas(64) std::int32_t first[kWidth], last[kWidth];
     /// Distances, as numbers of which no two are the same; -1 = not seen.
     alignas(64) std::int32_t order[kWidth];
     std::uint32_t seen;
+    /// BoxBounds of single texels, and a bit for those that are above.
+    alignas(64) float sides_m[kWidth], reach_m[kWidth];
+    std::uint32_t above;
 };
 
 /// Steps, from the first to the last, at which meeting each with boxes takes less time than finding
 /// the azimuths of the boxes.
-inline constexpr int kFewRays = 10;
+inline constexpr int kFewRays = 24;
+static_assert(kFewRays <= 32, "a bit for each in a lane");
 
-/// How far lines along d pass the boxes with middle c and half sides h, negative where they meet
-/// them, along one axis: the other two are y and z. (S. Gottschalk et al., "OBBTree", 1996.)
-HWY_INLINE Vf gap(Vf dy, Vf dz, Vf cy, Vf cz, Vf hy, Vf hz) {
-    const Vf reach = hn::MulAdd(hn::Abs(dy), hz, hn::Mul(hn::Abs(dz), hy));
-    return hn::Sub(hn::Abs(product_difference(dy, cz, dz, cy)), reach);
+/// Roundings of the distance to a plane along a ray: inputs 2, inverse 1, product 1; of two of
+/// them.
+inline constexpr float kRayRoundings = 16.0f;
+
+/// From a table a bit comes into all lanes by one instruction.
+inline constexpr auto kBits = [] {
+    std::array<std::uint32_t, 32> bits{};
+    for (unsigned i = 0; i < bits.size(); ++i)
+        bits[i] = 1u << i;
+    return bits;
+}();
+
+/// The open steps of [first_step, last_step] whose rays meet boxes: bit 0 is the first one. The
+/// sun's coordinates have the same signs at all of them, and tell whether rays enter boxes by their
+/// lower or by their upper sides. (T. Kay, J. Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986.)
+HWY_INLINE Vi steps_meeting(const Walk& walk, const Boxes& box, int first_step,
+                            std::uint64_t open) {
+    const float* const x = walk.per_sun[0] + first_step;
+    const float* const y = walk.per_sun[1] + first_step;
+    const float* const z = walk.per_sun[2] + first_step;
+    const bool down_x = *x < 0.0f, down_y = *y < 0.0f, down_z = *z < 0.0f;
+    const Vec3f in{down_x ? box.upper.x : box.lower.x, down_y ? box.upper.y : box.lower.y,
+                   down_z ? box.upper.z : box.lower.z};
+    const Vec3f out{down_x ? box.lower.x : box.upper.x, down_y ? box.lower.y : box.upper.y,
+                    down_z ? box.lower.z : box.upper.z};
+    const Vf more = splat(1.0f + kRayRoundings * kUnitRoundoff), zero = splat(0.0f);
+    Vf met = zero;
+    for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        const Vec3f per_sun{splat(x[i]), splat(y[i]), splat(z[i])};
+        const Vf enters = hn::Max(hn::Max(hn::Mul(in.x, per_sun.x), hn::Mul(in.y, per_sun.y)),
+                                  hn::Max(hn::Mul(in.z, per_sun.z), zero));
+        const Vf leaves = hn::Min(hn::Min(hn::Mul(out.x, per_sun.x), hn::Mul(out.y, per_sun.y)),
+                                  hn::Mul(out.z, per_sun.z));
+        const Vf bit = splat(std::bit_cast<float>(kBits[static_cast<unsigned>(i)]));
+        met = hn::Or(met, hn::IfThenElseZero(hn::Le(enters, hn::Mul(leaves, more)), bit));
+    }
+    return hn::BitCast(Ints(), met);
 }
 
-/// The open steps of [first_step, last_step] whose rays meet boxes. Roundings are relative to the
-/// magnitudes: inputs 3, products 4, sums 3; some to spare.
-HWY_INLINE Steps steps_meeting(const Walk& walk, const Boxes& box, int first_step, int last_step) {
-    const Vf half = splat(0.5f);
-    const Vec3f sides = box.upper - box.lower;
-    const Vec3f h{hn::Mul(half, sides.x), hn::Mul(half, sides.y), hn::Mul(half, sides.z)};
-    const Vec3f c{hn::Add(box.lower.x, h.x), hn::Add(box.lower.y, h.y), hn::Add(box.lower.z, h.z)};
-    const Vf error = hn::Mul(splat(kTermRoundings * kUnitRoundoff),
-                             hn::Add(sum_of_magnitudes(c), sum_of_magnitudes(h)));
-    const Vf none = splat(walk.ranges.last_step + 1.0f);
-    Vf first = none, last = splat(-1.0f);
-    for (int word = first_step / 64; word <= last_step / 64; ++word) {
-        std::uint64_t rest = walk.open_steps(word, first_step, last_step);
-        for (; rest != 0; rest &= rest - 1) {
-            const int step = 64 * word + std::countr_zero(rest);
-            const Vec3f d{splat(walk.sun[0][step]), splat(walk.sun[1][step]),
-                          splat(walk.sun[2][step])};
-            const Vf x = gap(d.y, d.z, c.y, c.z, h.y, h.z);
-            const Vf y = gap(d.z, d.x, c.z, c.x, h.z, h.x);
-            const Vf z = gap(d.x, d.y, c.x, c.y, h.x, h.y);
-            const Vec3f length{hn::Abs(d.x), hn::Abs(d.y), hn::Abs(d.z)};
-            const Vf behind = hn::Neg(hn::Add(dot(d, c), dot(length, h)));
-            const Lanes met = hn::Le(hn::Max(hn::Max(x, y), hn::Max(z, behind)), error);
-            const Vf at = splat(static_cast<float>(step));
-            first = hn::Min(first, hn::IfThenElse(met, at, none));
-            last = hn::IfThenElse(met, at, last);
-        }
-    }
-    return {hn::Le(first, last), first, last};
+/// BoxBounds of children.
+HWY_INLINE void find_bounds(const Tile& tile, const Boxes& box, int lane0, Children& children) {
+    const auto farthest = [](Vf low, Vf high) HWY_ATTR { return hn::Max(hn::Neg(low), high); };
+    const Vf reach =
+        hn::Add(farthest(box.lower.x, box.upper.x),
+                hn::Add(farthest(box.lower.y, box.upper.y), farthest(box.lower.z, box.upper.z)));
+    const Vec3f lengths = box.upper - box.lower;
+    const Vf sides = hn::Add(lengths.x, hn::Add(lengths.y, lengths.z));
+    const auto lowest = [&](Vf low, Vf high, int axis) HWY_ATTR {
+        return hn::Mul(splat(tile.normal[axis]), tile.normal[axis] > 0.0f ? low : high);
+    };
+    const Vf height =
+        hn::Add(lowest(box.lower.x, box.upper.x, 0),
+                hn::Add(lowest(box.lower.y, box.upper.y, 1), lowest(box.lower.z, box.upper.z, 2)));
+    const Vf error = hn::MulAdd(reach, splat(kTermRoundings * kUnitRoundoff), splat(tile.touch_m));
+    hn::Store(sides, Floats(), children.sides_m + lane0);
+    hn::Store(reach, Floats(), children.reach_m + lane0);
+    children.above |= bits_of(hn::Gt(height, error)) << lane0;
+}
+
+/// Which children are seen, and in which order; of those that are, `steps_seen` see a step.
+HWY_INLINE void set_seen(const Tile& tile, const Node& node, const Boxes& box, Lanes steps_seen,
+                         int lane0, Children& children) {
+    const Vi child = hn::Load(Ints(), node.child + lane0);
+    const Lanes present = hn::RebindMask(Floats(), hn::Ne(child, hn::Set(Ints(), Node::kNoChild)));
+    const Lanes seen = hn::And(hn::And(present, steps_seen), above_tile(tile, box));
+    // Floats that are not negative are in the order of their bits; the last ones tell lanes.
+    const Vi distances =
+        hn::AndNot(hn::Set(Ints(), kWidth - 1), hn::BitCast(Ints(), distance2(box)));
+    const Vi order = hn::Or(distances, hn::Iota(Ints(), lane0));
+    const Vi none = hn::Set(Ints(), -1);
+    hn::Store(hn::IfThenElse(hn::RebindMask(Ints(), seen), order, none), Ints(),
+              children.order + lane0);
+    children.seen |= bits_of(seen) << lane0;
+}
+
+HWY_INLINE Boxes boxes_of(const Tile& tile, const Node& node, int lane0) {
+    return {load3(node.lower, lane0) - splat3(tile.upper_m),
+            load3(node.upper, lane0) - splat3(tile.lower_m)};
 }
 
 template <bool kSingle>
-HWY_INLINE void find_children(const Walk& walk, const Node& node, int first_step, int last_step,
+HWY_INLINE void find_children(const Walk& walk, const Node& node, const Walk::Entry& entry,
                               Children& children) {
     const Tile& tile = walk.tile;
     children.seen = 0;
+    children.above = 0;
     for (int lane0 = 0; lane0 < kWidth; lane0 += kLanes) {
-        const Vi child = hn::Load(Ints(), node.child + lane0);
-        const Boxes box{load3(node.lower, lane0) - splat3(tile.upper_m),
-                        load3(node.upper, lane0) - splat3(tile.lower_m)};
-        const Steps steps = kSingle && last_step - first_step < kFewRays
-                                ? steps_meeting(walk, box, first_step, last_step)
-                                : cut(steps_towards(walk.ranges, box), first_step, last_step);
-        const Lanes present =
-            hn::RebindMask(Floats(), hn::Ne(child, hn::Set(Ints(), Node::kNoChild)));
-        const Lanes seen = hn::And(hn::And(present, steps.any), above_tile(tile, box));
-        // Floats that are not negative are in the order of their bits; the last ones tell lanes.
-        const Vi distances =
-            hn::AndNot(hn::Set(Ints(), kWidth - 1), hn::BitCast(Ints(), distance2(box)));
-        const Vi order = hn::Or(distances, hn::Iota(Ints(), lane0));
-        const Vi none = hn::Set(Ints(), -1);
-        hn::Store(hn::IfThenElse(hn::RebindMask(Ints(), seen), order, none), Ints(),
-                  children.order + lane0);
-        hn::Store(steps.first, Floats(), children.first + lane0);
-        hn::Store(steps.last, Floats(), children.last + lane0);
-        children.seen |= bits_of(seen) << lane0;
+        const Boxes box = boxes_of(tile, node, lane0);
+        const Steps steps = cut(steps_towards(walk.ranges, box), entry.first_step, entry.last_step);
+        set_seen(tile, node, box, steps.any, lane0, children);
+        if constexpr (kSingle) find_bounds(tile, box, lane0, children);
+        hn::Store(hn::ConvertTo(Ints(), steps.first), Ints(), children.first + lane0);
+        hn::Store(hn::ConvertTo(Ints(), steps.last), Ints(), children.last + lane0);
+    }
+}
+
+/// The same by rays, at few steps.
+HWY_INLINE void find_children_by_rays(const Walk& walk, const Node& node, const Walk::Entry& entry,
+                                      Children& children) {
+    const Tile& tile = walk.tile;
+    children.seen = 0;
+    children.above = 0;
+    const std::uint64_t open = walk.open_window(entry.first_step, entry.last_step);
+    alignas(64) std::uint32_t met[kWidth];
+    for (int lane0 = 0; lane0 < kWidth; lane0 += kLanes) {
+        const Boxes box = boxes_of(tile, node, lane0);
+        const Vi steps = steps_meeting(walk, box, entry.first_step, open);
+        const Lanes any = hn::RebindMask(Floats(), hn::Ne(steps, hn::Zero(Ints())));
+        set_seen(tile, node, box, any, lane0, children);
+        find_bounds(tile, box, lane0, children);
+        hn::Store(hn::BitCast(hn::RebindToUnsigned<Floats>(), steps),
+                  hn::RebindToUnsigned<Floats>(), met + lane0);
+    }
+    for (std::uint32_t rest = children.seen; rest != 0; rest &= rest - 1) {
+        const int lane = std::countr_zero(rest);
+        children.first[lane] = entry.first_step + std::countr_zero(met[lane]);
+        children.last[lane] = entry.first_step + 31 - std::countl_zero(met[lane]);
     }
 }
 
 /// Puts the children on the stack, the nearest on top. Counting those that are farther than each
 /// takes no branch that depends on them.
+template <bool kSingle>
 HWY_INLINE void push_children(Walk& walk, const Node& node, const Children& children,
                               Walk::Entry* top) {
     const std::vector<Leaf>& leaves = walk.tree->leaves();
@@ -149,8 +212,14 @@ HWY_INLINE void push_children(Walk& walk, const Node& node, const Children& chil
                 hn::CountTrue(Ints(), hn::Gt(hn::Load(Ints(), children.order + lane0), order));
         }
         const std::int32_t child = node.child[lane];
-        top[farther] = {child, static_cast<std::int32_t>(children.first[lane]),
-                        static_cast<std::int32_t>(children.last[lane])};
+        Walk::Entry& entry = top[farther];
+        entry.child = child;
+        entry.first_step = children.first[lane];
+        entry.last_step = children.last[lane];
+        if constexpr (kSingle) {
+            entry.bounds = {children.sides_m[lane], children.reach_m[lane],
+                            (children.above >> lane & 1) != 0};
+        }
         if (child < 0) prefetch(leaves[static_cast<std::size_t>(~child)]);
     }
 }
@@ -159,6 +228,19 @@ HWY_INLINE void visit_leaf(Walk& walk, const Leaf& leaf, std::int32_t id, int fi
                            int last_step) {
     for (int lane0 = 0; lane0 < kWidth && !std::isnan(leaf.corner[0][lane0]); lane0 += kLanes)
         walk.leaves[walk.leaf_count++] = {&leaf, id, lane0, first_step, last_step};
+}
+
+/// Steps, from the first to the last, at which a single texel tests all of a leaf's triangles at
+/// each in less time than it takes to find the steps of each triangle.
+inline constexpr int kFewLeafSteps = 24;
+static_assert(kFewLeafSteps <= 64, "a window of open steps");
+
+HWY_INLINE void visit_single(Walk& walk, const Leaf& leaf, const Walk::Entry& entry) {
+    if (entry.bounds.is_above && entry.last_step - entry.first_step < kFewLeafSteps) {
+        cast_few(walk, leaf, entry);
+    } else {
+        visit_leaf(walk, leaf, ~entry.child, entry.first_step, entry.last_step);
+    }
 }
 
 template <bool kSingle>
@@ -170,7 +252,7 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
     test_pairs<false>(walk);
     test_pairs<true>(walk);
     int entries = 0;
-    walk.stack[entries++] = {0, 0, walk.steps - 1};
+    walk.stack[entries++] = {0, 0, walk.steps - 1, {}};
     while (entries > 0) {
         Walk::Entry entry = walk.stack[--entries];
         // What is dark to all texels of a tile is too little to make up for looking closely.
@@ -179,8 +261,12 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
         if (!is_open) continue;
         if (entry.child < 0) {
             const auto id = ~entry.child;
-            visit_leaf(walk, leaves[static_cast<std::size_t>(id)], id, entry.first_step,
-                       entry.last_step);
+            const Leaf& leaf = leaves[static_cast<std::size_t>(id)];
+            if constexpr (kSingle) {
+                visit_single(walk, leaf, entry);
+            } else {
+                visit_leaf(walk, leaf, id, entry.first_step, entry.last_step);
+            }
             if (walk.leaf_count <= (Walk::kLeafBatch - 1) * kVisits) continue;
             cast_leaves<kSingle>(walk);
             // Nodes alone take little time.
@@ -189,8 +275,13 @@ HWY_INLINE bool walk_nodes(Walk& walk) {
         }
         const Node& node = nodes[static_cast<std::size_t>(entry.child)];
         Children children;
-        find_children<kSingle>(walk, node, entry.first_step, entry.last_step, children);
-        push_children(walk, node, children, walk.stack + entries);
+        if (kSingle && entry.last_step - entry.first_step < kFewRays &&
+            walk.same_signs_until[entry.first_step] >= entry.last_step) {
+            find_children_by_rays(walk, node, entry, children);
+        } else {
+            find_children<kSingle>(walk, node, entry, children);
+        }
+        push_children<kSingle>(walk, node, children, walk.stack + entries);
         entries += std::popcount(children.seen);
     }
     cast_leaves<kSingle>(walk);

@@ -97,6 +97,13 @@ struct Culprit {
     int lane;
 };
 
+/// What bounds the errors of a box's triangles for a single texel.
+struct BoxBounds {
+    float sides_m;  ///< sum of the box's sides
+    float reach_m;  ///< no point's magnitudes relative to the texel add up to more
+    bool is_above;  ///< the box surely is above the texel's plane, by more than touches
+};
+
 /// Everything that a walk through the tree reads and writes. Plain arrays: it is shared by code
 /// for different instruction sets.
 struct Walk {
@@ -110,6 +117,10 @@ struct Walk {
     const Tree* tree = nullptr;
     const DayPath* path = nullptr;
     const float* sun[3] = {};
+    /// Inverses of the coordinates of the sun's directions, of those near 0 large ones.
+    alignas(64) float per_sun[3][DayPath::kMaxSteps];
+    /// Of each step, the last one up to which none of these signs changes.
+    std::int32_t same_signs_until[DayPath::kMaxSteps];
     int steps = 0, words = 0;
     /// The steps that face receivers of this normal.
     std::uint64_t facing[kMaxWords];
@@ -125,10 +136,11 @@ struct Walk {
 
     /// Bit i of lit[k]: texel i is not yet known to be dark at step k. Bit k of open: some are not.
     alignas(64) std::uint64_t lit[DayPath::kMaxSteps];
-    std::uint64_t open[kMaxWords];
+    std::uint64_t open[kMaxWords + 1];  ///< the last word is 0, for windows
 
     struct Entry {
         std::int32_t child, first_step, last_step;
+        BoxBounds bounds;  ///< for single texels
     };
     Entry stack[kStack];
     LeafVisit leaves[kLeafBatch * kWidth];  ///< with registers of one lane, one for each triangle
@@ -172,6 +184,12 @@ struct Walk {
     /// Moves the ends of [first_step, last_step] to the nearest open steps in it; false if there
     /// are none.
     bool narrow(std::int32_t& first_step, std::int32_t& last_step) const {
+        if (last_step - first_step < 64) {
+            const std::uint64_t window = open_window(first_step, last_step);
+            last_step = first_step + 63 - std::countl_zero(window);
+            first_step += std::countr_zero(window);
+            return window != 0;
+        }
         int first = first_step / 64, last = last_step / 64;
         std::uint64_t low = open_steps(first, first_step, last_step);
         while (low == 0) {
@@ -191,6 +209,20 @@ struct Walk {
         if (word == first_step / 64) bits &= ~std::uint64_t{0} << (first_step % 64);
         if (word == last_step / 64) bits &= ~std::uint64_t{0} >> (63 - last_step % 64);
         return bits;
+    }
+    /// The open steps of [first_step, last_step], at most 64 steps: bit 0 is the first one.
+    std::uint64_t open_window(int first_step, int last_step) const {
+        const std::uint64_t* const at = open + first_step / 64;
+        const int bit = first_step % 64;
+        const std::uint64_t bits = at[0] >> bit | at[1] << 1 << (63 - bit);
+        return bits & ~std::uint64_t{0} >> (63 - (last_step - first_step));
+    }
+    /// For a single texel; bit 0 is `first_step`.
+    void darken_window(int first_step, std::uint64_t dark) {
+        std::uint64_t* const at = open + first_step / 64;
+        const int bit = first_step % 64;
+        at[0] &= ~(dark << bit);
+        at[1] &= ~(dark >> 1 >> (63 - bit));
     }
     void darken(int step, std::uint64_t texels) {
         lit[step] &= ~texels;
