@@ -6,6 +6,7 @@
 
 #include "visibility/light_warp.h"
 
+#include <glm/common.hpp>
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace gnomon {
 
@@ -58,6 +60,35 @@ glm::dmat4 perspective_along_y(double near_m, double far_m, double y0, double z_
     return matrix;
 }
 
+/// Points between receivers, on each line as many in each octave of distances from the camera.
+std::vector<DVec3> along_the_view(std::span<const DVec3> receivers_ws, const glm::dmat4& view) {
+    constexpr double kShares[] = {1.0 / 6.0, 0.5, 5.0 / 6.0};
+    const auto distance_m = [&](const DVec3& p) { return -(view * DVec4(p, 1.0)).z; };
+    std::vector<DVec3> points_ws;
+    for (std::size_t i = 0; i < receivers_ws.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const double from_m = distance_m(receivers_ws[i]), to_m = distance_m(receivers_ws[j]);
+            for (const double share : kShares) {
+                const double ratio = to_m / from_m;
+                // Of the way, where the distance is from_m * ratio^share.
+                const bool is_far = from_m > 0.0 && to_m > 0.0 && std::abs(ratio - 1.0) > 1e-6;
+                const double way = is_far ? (std::pow(ratio, share) - 1.0) / (ratio - 1.0) : share;
+                points_ws.push_back(glm::mix(receivers_ws[i], receivers_ws[j], way));
+            }
+        }
+    }
+    return points_ws;
+}
+
+/// A picture wants texels that grow with the distance, so that their logarithms count alike near
+/// and far.
+double mean_log_texel(const LightFit& fit, std::span<const DVec3> points_ws) {
+    double sum = 0.0;
+    for (const DVec3& p : points_ws)
+        sum += std::log(static_cast<double>(fit.texel_size_m(Vec3(p))));
+    return points_ws.empty() ? 0.0 : sum / static_cast<double>(points_ws.size());
+}
+
 }  // namespace
 
 double warp_near_m(Warp warp, double focus, double near_m, double far_m, double sine,
@@ -99,22 +130,31 @@ LightFit fit_warped(Warp warp, double focus, const DirectionalLight& light, cons
         distances.include(DVec3(-(view * DVec4(p, 1.0)).z));
     }
     const double length_m = body.high.y - body.low.y;
-    const double near_m =
-        warp_near_m(warp, focus, distances.low.x, distances.high.x, sine, length_m);
-    // Ten times the length away a perspective is as good as none, and so is one of no length.
-    constexpr double kFarthestEye = 10.0;
     // Of a triangle whose corners are farther away than this times the eye, rasterisers' floats
     // leave too few bits of the depth near it.
     constexpr double kFarthestCorner = 2000.0;
-    if (!(length_m > 0.0) || !(near_m < kFarthestEye * length_m) ||
-        static_cast<double>(bounds.diagonal()) > kFarthestCorner * near_m) {
-        return uniform();
-    }
+    const double least_m = static_cast<double>(bounds.diagonal()) / kFarthestCorner;
+    const double strongest_m =
+        std::max(warp_near_m(warp, focus, distances.low.x, distances.high.x, sine, length_m), 0.0);
+    LightFit best = uniform();
+    if (!(length_m > 0.0) || strongest_m < least_m) return best;
 
-    const glm::dmat4 warped = perspective_along_y(near_m, near_m + length_m, body.low.y,
-                                                  0.5 * (body.low.z + body.high.z)) *
-                              light_space;
-    return fit_image(warped, receivers_ws, size_texels, margin_texels);
+    // Ten times the length away a perspective is as good as none.
+    constexpr double kFarthestEye = 10.0;
+    const std::vector<DVec3> samples_ws = along_the_view(receivers_ws, view);
+    double least_texel = mean_log_texel(best, samples_ws);
+    constexpr double kWeaker = 2.0;
+    for (double near_m = strongest_m; near_m < kFarthestEye * length_m; near_m *= kWeaker) {
+        const glm::dmat4 warped = perspective_along_y(near_m, near_m + length_m, body.low.y,
+                                                      0.5 * (body.low.z + body.high.z)) *
+                                  light_space;
+        const LightFit fit = fit_image(warped, receivers_ws, size_texels, margin_texels);
+        const double texel = mean_log_texel(fit, samples_ws);
+        if (texel >= least_texel) continue;
+        least_texel = texel;
+        best = fit;
+    }
+    return best;
 }
 
 }  // namespace gnomon

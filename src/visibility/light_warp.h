@@ -26,8 +26,8 @@ inline constexpr double kDefaultFocus = 0.4;
 double warp_near_m(Warp warp, double focus, double near_m, double far_m, double sine,
                    double length_m);
 
-/// A map around `receivers_ws` whose texels are smaller near the camera. Falls back to
-/// fit_directional() when the camera looks along the light.
+/// A map around `receivers_ws` whose texels are smaller near the camera, by the warp or a weaker
+/// one; as fit_directional() where none makes the mean texel smaller.
 LightFit fit_warped(Warp warp, double focus, const DirectionalLight& light, const Camera& camera,
                     std::span<const DVec3> receivers_ws, const Box3& bounds, unsigned size_texels,
                     float margin_texels);

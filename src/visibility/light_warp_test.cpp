@@ -73,6 +73,30 @@ TEST(FitWarped, HasSmallerTexelsTowardsTheCamera) {
     }
 }
 
+// In a yard whose ground reaches up to the camera the published warps magnify what is before its
+// feet and starve the walls.
+TEST(FitWarped, HasNoLargerTexelsThanAUniformMapOnTheWhole) {
+    View view = along_ground();
+    view.bounds = {{-10, 0, -10}, {10, 5, 10}};
+    view.camera = look_at({0, 1.7f, 9.0f}, {0, 1.5f, -10}, radians(60.0f));
+    view.light.to_light_ws = normalize({0.0f, 0.7f, -1.0f});
+    view.receivers_ws = visible_corners(view.camera, {160, 90}, view.bounds);
+    for (const Warp warp : {Warp::lispsm, Warp::trapezoidal}) {
+        const LightFit fit = fit_warped(warp, kDefaultFocus, view.light, view.camera,
+                                        view.receivers_ws, view.bounds, kMapSize, kMargin);
+        const LightFit even = fit_warped(Warp::none, kDefaultFocus, view.light, view.camera,
+                                         view.receivers_ws, view.bounds, kMapSize, kMargin);
+        double gained = 0.0;
+        for (const float across : {-8.0f, -3.0f, 3.0f, 8.0f}) {
+            for (const Vec3 p : {Vec3(across, 2.5f, -10), Vec3(-10, 2.5f, across - 2.0f),
+                                 Vec3(0.3f * across, 0, -6), Vec3(0.3f * across, 0, 2)}) {
+                gained += static_cast<double>(std::log(even.texel_size_m(p) / fit.texel_size_m(p)));
+            }
+        }
+        EXPECT_GE(gained, 0.0);
+    }
+}
+
 TEST(WarpNear, BringsTheTrapezoidsFocusToFourFifths) {
     for (const double focus : {0.1, 0.4, 0.7}) {
         const double length_m = 50.0;
