@@ -6,7 +6,10 @@
 
 #include "split_distances.h"
 #include "technique/map_technique.h"
+#include "visibility/light_view.h"
 #include "visibility/light_warp.h"
+
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +25,7 @@ enum class Fit { tight, stable };
 struct Options : MapOptions {
     Options() { filter = MapFilter::box_3x3; }
     int splits = 4;
+    bool fewer_splits = false;
     double split_lambda = 0.8;
     double split_blend = 0.0;
     double split_bias = 1.0;
@@ -36,6 +40,9 @@ const ParamTable<Options>& param_table() {
         "pssm",
         {integer("splits", &Options::splits, 1, static_cast<int>(shared::kMaxMapLayers), "1",
                  "pieces that the view is cut into"),
+         boolean("fewer_splits", &Options::fewer_splits,
+                 "only as many as the farthest receiver needs, were all that a camera may see from "
+                 "here cut into splits: where little is seen, fewer maps with larger texels"),
          number("split_lambda", &Options::split_lambda, 0.0, 1.0, "1",
                 "0: pieces of equal length; 1: each longer than the one before by one factor"),
          number("split_blend", &Options::split_blend, 0.0, 0.5, "1",
@@ -86,7 +93,7 @@ private:
             const std::vector<DepthRange> occupied =
                 options_.fit == Fit::stable ? std::vector{in_steps(seen.range)} : seen.occupied();
             const std::vector<double> distances_m =
-                pssm::split_distances(occupied, options_.splits, options_.split_lambda);
+                pssm::split_distances(occupied, splits_of(frame, seen), options_.split_lambda);
             for (std::size_t i = 0; i + 1 < distances_m.size(); ++i) {
                 const DepthRange range{distances_m[i] * (1.0 - plan.blend), distances_m[i + 1]};
                 const Seen inside = seen.within(range);
@@ -105,6 +112,15 @@ private:
         }
         if (plan.layers.empty()) plan.layers.push_back(split(frame, seen, {0.0, 0.0}, {}));
         return plan;
+    }
+
+    int splits_of(const Frame& frame, const Seen& seen) const {
+        if (!options_.fewer_splits) return options_.splits;
+        const DVec3 eye_ws(glm::inverse(glm::dmat4(frame.camera.view_from_world))[3]);
+        const DepthRange whole{
+            std::min(seen.range.near_m, double{frame.camera.near_m}),
+            std::max(seen.range.far_m, farthest_m(frame.scene.bounds(), eye_ws))};
+        return pssm::splits_needed(whole, seen.range.far_m, options_.splits, options_.split_lambda);
     }
 
     /// Also what a camera that is moved back would see of the scene in the split.

@@ -1,6 +1,8 @@
 #include "split_distances.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace gnomon::pssm {
 
@@ -37,6 +39,15 @@ std::vector<double> split_distances(std::span<const DepthRange> occupied, int sp
     }
     distances_m.push_back(occupied.back().far_m);
     return distances_m;
+}
+
+int splits_needed(DepthRange whole, double farthest_m, int splits, double lambda) {
+    const std::vector<double> begins_m =
+        split_distances(std::span(&whole, 1), splits, lambda);  // the last one ends the last split
+    const auto needed =
+        std::ranges::count_if(std::span(begins_m).first(static_cast<std::size_t>(splits)),
+                              [&](double begin_m) { return begin_m < farthest_m; });
+    return std::max(static_cast<int>(needed), 1);
 }
 
 }  // namespace gnomon::pssm

@@ -16,4 +16,8 @@ namespace gnomon::pssm {
 std::vector<double> split_distances(std::span<const DepthRange> occupied, int splits,
                                     double lambda);
 
+/// How many pieces are needed when nothing farther than `farthest_m` is seen, were the `whole` of
+/// what a camera may see from here cut into `splits`: those that begin before it, at least 1.
+int splits_needed(DepthRange whole, double farthest_m, int splits, double lambda);
+
 }  // namespace gnomon::pssm

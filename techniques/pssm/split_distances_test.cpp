@@ -36,6 +36,18 @@ TEST(SplitDistances, AreUniformLogarithmicOrBetween) {
     }
 }
 
+// Logarithmic ones of 1 to 81 begin at 1, 3, 9 and 27.
+TEST(SplitDistances, AreAsManyAsTheFarthestReceiverNeeds) {
+    const DepthRange whole{1.0, 81.0};
+    EXPECT_EQ(splits_needed(whole, 81.0, 4, 1.0), 4);
+    EXPECT_EQ(splits_needed(whole, 26.0, 4, 1.0), 3);
+    EXPECT_EQ(splits_needed(whole, 10.0, 4, 1.0), 3);
+    EXPECT_EQ(splits_needed(whole, 8.0, 4, 1.0), 2);
+    EXPECT_EQ(splits_needed(whole, 2.0, 4, 1.0), 1);
+    EXPECT_EQ(splits_needed(whole, 0.5, 4, 1.0), 1);
+    EXPECT_EQ(splits_needed(whole, 40.0, 4, 0.0), 2);  // uniform: 1, 21, 41, 61
+}
+
 TEST(SplitDistances, LeaveOutWhereNothingIs) {
     const std::vector<DepthRange> occupied{{1.0, 4.0}, {100.0, 400.0}};
     const std::vector<double> logarithmic = split_distances(occupied, 4, 1.0);
