@@ -36,6 +36,7 @@ INTERVALS = "--technique occlusion_interval_maps"
 CHAPTER_13 = ("--occlusion_interval_maps.lookup nearest --occlusion_interval_maps.weight even "
               "--occlusion_interval_maps.bits 8")
 VERTEX = "--technique vertex_occlusion"
+COARSE_FACES = "--omni.map_size 128 --omni.filter nearest --omni.fit whole"
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
 
@@ -65,8 +66,13 @@ PICTURES = {
         "courtyard", f"courtyard {BLURRED}", f"courtyard {MAP} --shadow_map.content variance --shadow_map.blur 8"]),
     "blurred_projection-self": ("1280x720", (630, 440, 850, 550), 2, ["courtyard", f"courtyard {BLURRED}"]),
     "blurred_projection-fails": ("1280x720", (480, 370, 1040, 480), 1, ["field-small", f"field-small {BLURRED}"]),
-    "omni": ("1280x720", (640, 420, 960, 600), 3, [
-        "torches", "torches --technique omni", "torches --technique omni --omni.projection tetrahedral"]),
+    "omni": ("640x360", (0, 60, 640, 340), 2, [
+        "jack-o-lantern", "jack-o-lantern --technique omni"] + [
+        f"jack-o-lantern --technique omni {COARSE_FACES} --omni.projection {body}"
+        for body in ("cube", "tetrahedral")]),
+    "omni-bias": ("640x360", (200, 90, 620, 290), 3, [
+        f"torches --lights 0{technique}"
+        for technique in ("", f" --technique omni {NO_BIAS.replace('shadow_map', 'omni')}", " --technique omni")]),
     "dual_paraboloid": ("640x360", (60, 60, 580, 360), 3, [
         f"cube {NEAR}", f"cube {NEAR} --technique dual_paraboloid",
         f"cube {NEAR} --technique dual_paraboloid --dual_paraboloid.subdivide false"]),
