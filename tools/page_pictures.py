@@ -87,6 +87,11 @@ PICTURES = {
     "pssm-splits": ("1280x720", (480, 280, 960, 440), 2, [
         f"field-large --technique pssm --pssm.splits {splits}" for splits in (1, 2, 4)] + [
         "field-large --technique pssm --pssm.fit stable"]),
+    "pssm-step": ("1920x1080", (280, 860, 600, 1060), 3, ["courtyard"] + [
+        f"courtyard --technique pssm --pssm.map_size 512 --pssm.split_lambda 1 --pssm.split_blend {blend}"
+        for blend in (0, 0.3)]),
+    "pssm-wires": ("1280x720", (0, 450, 420, 650), 3, ["gas-station"] + [
+        f"gas-station --technique pssm --pssm.map_size {size}" for size in (2048, 512)]),
     "lispsm": ("1280x720", (480, 200, 960, 440), 3, [
         "field-large", f"field-large {MAP}", "field-large --technique lispsm"]),
     "lispsm-fails": ("1280x720", (860, 400, 1180, 560), 3, [
