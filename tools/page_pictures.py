@@ -37,6 +37,7 @@ CHAPTER_13 = ("--occlusion_interval_maps.lookup nearest --occlusion_interval_map
               "--occlusion_interval_maps.bits 8")
 VERTEX = "--technique vertex_occlusion"
 COARSE_FACES = "--omni.map_size 128 --omni.filter nearest --omni.fit whole"
+ON_GROUND = "--light point:position=0,0.02,0 --ambient 0 --exposure 4000"  # by which the ground's light can be seen
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
 
@@ -76,6 +77,9 @@ PICTURES = {
     "dual_paraboloid": ("640x360", (60, 60, 580, 360), 3, [
         f"cube {NEAR}", f"cube {NEAR} --technique dual_paraboloid",
         f"cube {NEAR} --technique dual_paraboloid --dual_paraboloid.subdivide false"]),
+    "dual_paraboloid-fails": ("1280x720", (220, 430, 660, 720), 3, [
+        f"courtyard {ON_GROUND}{technique}"
+        for technique in ("", " --technique dual_paraboloid", " --technique omni")]),
     "psm-suns": ("1280x720", (470, 300, 710, 440), 4, [
         f"field-small --light sun:{light}{technique}"
         for light in ("elevation=85,azimuth=0", "elevation=30,azimuth=180", "elevation=30,azimuth=90", "elevation=30,azimuth=0")
