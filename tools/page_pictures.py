@@ -101,7 +101,7 @@ PICTURES = {
     "lispsm-fails": ("1280x720", (860, 400, 1180, 560), 3, [
         "courtyard", f"courtyard {MAP} --shadow_map.map_size 1024",
         "courtyard --technique lispsm --lispsm.map_size 1024"]),
-    "tsm-focus": ("1280x720", (480, 200, 960, 440), 3, [
+    "tsm-focus": ("1280x720", (480, 200, 960, 440), 2, ["field-large"] + [
         f"field-large --technique tsm --tsm.focus {focus}" for focus in (0.1, 0.4, 0.7)]),
     "shadow_volumes-alpha": ("1280x720", (520, 380, 920, 560), 3, [
         "courtyard", "courtyard --technique shadow_volumes", "courtyard --ignore-alpha"]),
