@@ -38,6 +38,7 @@ CHAPTER_13 = ("--occlusion_interval_maps.lookup nearest --occlusion_interval_map
 VERTEX = "--technique vertex_occlusion"
 COARSE_FACES = "--omni.map_size 128 --omni.filter nearest --omni.fit whole"
 ON_GROUND = "--light point:position=0,0.02,0 --ambient 0 --exposure 4000"  # by which the ground's light can be seen
+AUTO_GPU = "--technique auto --auto.device gpu"
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
 
@@ -115,6 +116,10 @@ PICTURES = {
     "vertex_occlusion-walls": ("1280x720", (620, 440, 860, 560), 3, ["courtyard"] + [
         f"courtyard {VERTEX} --vertex_occlusion.tessellate 0.3 --vertex_occlusion.walls {walls}"
         for walls in ("false", "true")]),
+    "auto": ("1280x720", (0, 450, 420, 650), 3, [
+        "gas-station", f"gas-station {AUTO_GPU}", "gas-station --technique pssm"]),
+    "auto-fails": ("1920x1080", (1000, 500, 1360, 640), 3, [
+        "gas-station", f"gas-station {AUTO_GPU}", "gas-station --technique pssm --pssm.filter pcss"]),
 }
 
 # Of a report: where the two techniques are beside the truth.
