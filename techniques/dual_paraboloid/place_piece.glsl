@@ -30,11 +30,14 @@ const float kLeastWeight = 1e-30;
 
 // Of the corners' directions, so that an edge's pieces have equal angles at the light however far
 // its ends are, as K. Shoemake's "Animating Rotation with Quaternion Curves", SIGGRAPH 1985, goes
-// along an arc; within the triangle a mean of its edges' weights. `at`: barycentric.
+// along an arc; within the triangle a mean of its edges' weights, of one scale, lest a short edge pulls all
+// pieces towards its ends. `at`: barycentric.
 vec3 arc_weights(vec3 at) {
+    const float kQuarter = 1.57079633;
     vec3 rad = max(edges_rad, kLeastRad);
-    vec3 by_next = sin(at * rad.zxy);      // along the edge to the next corner
-    vec3 by_previous = sin(at * rad.yzx);  // and to the one before
+    vec3 scale = sin(min(rad, kQuarter));  // of half a circle the sine is 0
+    vec3 by_next = sin(at * rad.zxy) / scale.zxy;      // along the edge to the next corner
+    vec3 by_previous = sin(at * rad.yzx) / scale.yzx;  // and to the one before
     precise vec3 sum = at.yzx * by_next + at.zxy * by_previous + kLeastWeight * at;
     return sum / (at.yzx + at.zxy + kLeastWeight);
 }
