@@ -99,9 +99,9 @@ PICTURES = {
         f"gas-station --technique pssm --pssm.map_size {size}" for size in (2048, 512)]),
     "lispsm": ("1280x720", (480, 200, 960, 440), 3, [
         "field-large", f"field-large {MAP}", "field-large --technique lispsm"]),
-    "lispsm-fails": ("1280x720", (860, 400, 1180, 560), 3, [
-        "courtyard", f"courtyard {MAP} --shadow_map.map_size 1024",
-        "courtyard --technique lispsm --lispsm.map_size 1024"]),
+    "lispsm-fails": ("1280x720", (580, 300, 900, 460), 3, [
+        "gas-station", f"gas-station {MAP} --shadow_map.map_size 512",
+        "gas-station --technique lispsm --lispsm.map_size 512"]),
     "tsm-focus": ("1280x720", (480, 200, 960, 440), 2, ["field-large"] + [
         f"field-large --technique tsm --tsm.focus {focus}" for focus in (0.1, 0.4, 0.7)]),
     "shadow_volumes-alpha": ("1280x720", (520, 380, 920, 560), 3, [
