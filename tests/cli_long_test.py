@@ -192,9 +192,20 @@ class Bake(CliTest):
         self.assert_fails(MACHINE, ["scene.glb", str(kept), "--resume"], *flags("day"), preexec_fn=limited)
         self.assertEqual([name for name in self.files() if "day" in name], ["day.unfinished"])
         self.assertGreater(kept.stat().st_size, 30_000)
+        self.assert_fails(INPUT, [str(kept), "--resume", "delete"], *flags("day"))
+        self.assertGreater(kept.stat().st_size, 30_000)
         self.assert_works(*flags("day"), "--resume")
         self.assertEqual(self.content("day"), self.content("whole"))
         self.assertFalse(kept.exists())
+
+    def test_a_file_of_another_kind_is_never_deleted(self):
+        notes = self.folder / "day.unfinished"
+        notes.write_text("chapter 1", encoding="utf-8")
+        for resume in ((), ("--resume",)):
+            self.assert_fails(INPUT, [str(notes), "no unfinished bake", "move"], "bake", "cube", *self.SUN, *resume,
+                              "-o", self.folder / "day")
+        self.assertEqual(self.files(), ["day.unfinished"])
+        self.assertEqual(notes.read_text(encoding="utf-8"), "chapter 1")
 
 
 class Interrupt(CliTest):

@@ -18,6 +18,8 @@ namespace gnomon::cli {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr const char* kExamples = R"(Examples:
   gnomon bake courtyard --sun place=48.137,11.575,date=2026-06-21 --texel 0.1 -o day
   gnomon bake city.glb --sun place=52,4.36,date=2026-12-21,utc=+01:00,north=-30 --bits 16 -o winter
@@ -91,6 +93,30 @@ std::string summary(const IntervalBake& bake, const std::string& folder) {
     return text + fmt::format("bake: {}\n", folder);
 }
 
+/// Where a bake keeps its work until its folder is written: beside it.
+fs::path unfinished_file(const fs::path& folder) {
+    fs::path file = folder;
+    return file += ".unfinished";
+}
+
+/// Work of hours, or a file that is not ours, would be lost.
+void require_unfinished_file(const fs::path& file, bool resumes) {
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(file, error))) return;
+    if (!is_unfinished_bake(file)) {
+        fail_usage(
+            "{}: is no unfinished bake, and a bake keeps its work under that name: move it away, "
+            "or choose another -o",
+            file.string());
+    }
+    if (!resumes) {
+        fail_usage(
+            "{}: an unfinished bake is there: go on with it by --resume, or delete it to begin "
+            "anew",
+            file.string());
+    }
+}
+
 void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& progress) {
     if (flags.scene.empty()) fail_usage("bake: SCENE is missing");
     if (flags.sun.empty() && flags.light.empty()) {
@@ -104,6 +130,8 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
     if (flags.bits != 8 && flags.bits != 16)
         fail_usage("--bits: {}; it must be 8 or 16", flags.bits);
     check_bake_folder(flags.output);
+    const fs::path part = unfinished_file(flags.output);
+    require_unfinished_file(part, flags.resume);
     const BakePath path = flags.light.empty() ? sun_path_of(flags) : light_path_of(flags);
     if (path.steps() == 0) {
         print(fmt::format("{}\nno sun, no bake\n", path.summary));
@@ -113,21 +141,19 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
                         .bits = static_cast<BakeBits>(flags.bits),
                         .most_pairs = flags.pairs,
                         .ignore_alpha = flags.ignore_alpha};
-    const std::filesystem::path part = flags.output + ".unfinished";
     const Scene scene = load(flags.scene, session, progress);
-    std::error_code ignored;
-    if (!flags.resume) std::filesystem::remove(part, ignored);
     options.resume_file = part;
+    std::error_code ignored;
     try {
         const IntervalBake bake = bake_intervals(scene, path, options, progress);
         progress.clear();
         for (const std::string& warning : bake.report.warnings)
             print_warning(warning);
         write_bake(flags.output, bake);
-        std::filesystem::remove(part, ignored);
+        if (is_unfinished_bake(part)) fs::remove(part, ignored);
         print(summary(bake, flags.output));
     } catch (const Error& error) {
-        const bool is_kept = std::filesystem::exists(part, ignored);
+        const bool is_kept = fs::exists(part, ignored);
         if (error.kind() == ErrorKind::input || !is_kept) throw;
         throw Error(error.kind(),
                     fmt::format("{}; what is done is kept in {}: --resume goes on with it",

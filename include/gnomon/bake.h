@@ -104,11 +104,14 @@ struct IntervalBake {
 };
 
 /// Bakes on all threads; the result is the same for any number of them. Throws Error{input} for
-/// options out of range, for a scene without area or of more texels than fit in memory, saying what
-/// would; Error{machine} when the disk of `resume_file` has no room for it; Error{cancelled}, after
+/// options out of range, for a `resume_file` that is not of this bake, for a scene without area or
+/// of more texels than fit in memory, saying what would; Error{machine} when the disk of `resume_file` has no room for it; Error{cancelled}, after
 /// it is written.
 IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
                             Progress& progress);
+
+/// Whether the file is one in which bake_intervals() keeps its work, of any bake.
+bool is_unfinished_bake(const std::filesystem::path& file);
 
 /// Writes DIR/bake.json, scene.glb and the textures; the folder appears whole or not at all, and
 /// replaces an older bake there. Throws Error{input} when it holds anything else, Error{machine}.

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstring>
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -17,6 +19,9 @@ namespace fs = std::filesystem;
 
 /// What the file takes for a texel of some intervals: with less free the work is not begun.
 constexpr std::uint64_t kTexel_bytes = 16;
+
+/// What the files of all versions begin with.
+constexpr std::string_view kMagic = "gnomon part ";
 
 /// The beginning of the file. The number of intervals of each texel follows, then the intervals.
 struct Header {
@@ -162,3 +167,16 @@ std::uint64_t fingerprint(const Scene& scene, const BakePath& path, const BakeOp
 }
 
 }  // namespace gnomon::bake
+
+namespace gnomon {
+
+bool is_unfinished_bake(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) return false;
+    std::array<char, bake::kMagic.size()> start{};
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(start.data(), start.size());
+    return stream && std::string_view(start.data(), start.size()) == bake::kMagic;
+}
+
+}  // namespace gnomon

@@ -46,6 +46,17 @@ TEST_F(UnfinishedBake, DamagedOnesAreErrors) {
     EXPECT_THROW(unfinished.load(), Error);
 }
 
+TEST_F(UnfinishedBake, IsKnownFromOtherFiles) {
+    EXPECT_FALSE(is_unfinished_bake(file_));
+    EXPECT_FALSE(is_unfinished_bake(file_.parent_path()));
+    Unfinished(file_, 7, 5).save(times_);
+    EXPECT_TRUE(is_unfinished_bake(file_));
+    for (const char* other : {"", "gnomon", "my notes on gnomon part 3"}) {
+        write_file(file_, other);
+        EXPECT_FALSE(is_unfinished_bake(file_)) << other;
+    }
+}
+
 TEST_F(UnfinishedBake, ADiskWithoutRoomIsToldBeforeTheWork) {
     try {
         const Unfinished unfinished(file_, 7, std::size_t{1} << 56);
