@@ -198,6 +198,17 @@ class Bake(CliTest):
         self.assertEqual(self.content("day"), self.content("whole"))
         self.assertFalse(kept.exists())
 
+    def test_a_slash_after_the_folder_is_no_part_of_its_name(self):
+        self.bake(*self.SUN)
+        before = self.content()
+        name = f"{self.folder / 'day'}/"
+        for _ in range(2):
+            told = self.assert_works("bake", "cube", "--texel", 0.25, *self.SUN, "-o", name)
+            self.assertEqual(told.splitlines()[-1], f"bake: {self.folder / 'day'}")
+            self.assertEqual(self.content(), before)
+        (self.folder / "day.unfinished").write_text("mine", encoding="utf-8")
+        self.assert_fails(INPUT, ["day.unfinished"], "bake", "cube", *self.SUN, "-o", name)
+
     def test_a_file_of_another_kind_is_never_deleted(self):
         notes = self.folder / "day.unfinished"
         notes.write_text("chapter 1", encoding="utf-8")

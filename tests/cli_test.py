@@ -188,6 +188,35 @@ class Output(CliTest):
         self.assert_fails(INPUT, ["-o", "does not exist"], "compare", "cube", "-o",
                           self.folder / "no" / "report")
 
+    # What comes before -o; the work itself, or its input, would fail otherwise.
+    FOLDER_COMMANDS = (("compare", "cube"), ("bake", "cube", "--sun", "place=48,11,date=2026-06-21"),
+                       ("sun", "cube", "--place", "48,11", "--date", "2026-06-21"), ("web", "no such bake"))
+
+    def fails_everywhere(self, words, output, **options):
+        for command in self.FOLDER_COMMANDS:
+            self.assert_fails(INPUT, ["-o", *words], *command, "-o", output, **options)
+
+    def test_folders_that_cannot_be_made(self):
+        self.fails_everywhere(["does not exist; make it first"], self.folder / "no" / "x")
+        (self.folder / "file").touch()
+        self.fails_everywhere(["is not a folder"], self.folder / "file" / "x")
+        (self.folder / "link").symlink_to(self.folder / "nowhere")
+        self.fails_everywhere(["is a link to", "nowhere", "does not exist"], self.folder / "link")
+        self.assertEqual(self.files(), ["file", "link"])
+
+    def test_folder_without_permission(self):
+        self.folder.chmod(0o755)
+        closed = self.folder / "closed"
+        closed.mkdir(mode=0o555)
+        options = {}
+        if os.geteuid() == 0:  # root may write everywhere
+            options["user"] = NOBODY
+            try:
+                gnomon("--version", **options)
+            except PermissionError:
+                self.skipTest("runs as root, and nobody else may run the program")
+        self.fails_everywhere(["closed cannot be written to"], closed / "x", **options)
+
     def test_output_is_a_folder(self):
         self.assert_fails(INPUT, ["-o", "folder"], "scene", "cube", "-o", self.folder)
 

@@ -129,8 +129,8 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
     if (flags.output.empty()) fail_usage("bake: -o is missing, as in -o day");
     if (flags.bits != 8 && flags.bits != 16)
         fail_usage("--bits: {}; it must be 8 or 16", flags.bits);
-    check_bake_folder(flags.output);
-    const fs::path part = unfinished_file(flags.output);
+    const fs::path folder = require_replaced_folder("-o", flags.output, check_bake_folder);
+    const fs::path part = unfinished_file(folder);
     require_unfinished_file(part, flags.resume);
     const BakePath path = flags.light.empty() ? sun_path_of(flags) : light_path_of(flags);
     if (path.steps() == 0) {
@@ -149,9 +149,9 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
         progress.clear();
         for (const std::string& warning : bake.report.warnings)
             print_warning(warning);
-        write_bake(flags.output, bake);
+        write_bake(folder, bake);
         if (is_unfinished_bake(part)) fs::remove(part, ignored);
-        print(summary(bake, flags.output));
+        print(summary(bake, folder.string()));
     } catch (const Error& error) {
         const bool is_kept = fs::exists(part, ignored);
         if (error.kind() == ErrorKind::input || !is_kept) throw;

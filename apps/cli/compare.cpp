@@ -50,7 +50,8 @@ std::string explanation(const ComparisonReport& report) {
 void run_compare(const CompareFlags& flags, const Session& session, ConsoleProgress& progress) {
     require_scene("compare", flags.view);
     if (flags.output.empty()) fail_usage("compare: -o is missing, as in -o report");
-    require_output_folder("-o", flags.output);
+    const std::filesystem::path folder =
+        require_replaced_folder("-o", flags.output, check_report_folder);
     CompareOptions options = flags.options;
     options.techniques = choose_techniques(flags.techniques, session);
     options.size = flags.view.size;
@@ -63,13 +64,12 @@ void run_compare(const CompareFlags& flags, const Session& session, ConsoleProgr
     Context context(context_options(session));
     const ComparisonReport report = compare_techniques(context, scene, options, progress);
     progress.check();
-    write_report(flags.output, report, progress);
+    write_report(folder, report, progress);
     progress.clear();
     print(table(report));
     if (flags.explain) print(explanation(report));
     check_validation(context);
-    print(
-        fmt::format("report: {}\n", (std::filesystem::path(flags.output) / "index.html").string()));
+    print(fmt::format("report: {}\n", (folder / "index.html").string()));
 }
 
 }  // namespace

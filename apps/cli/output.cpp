@@ -1,7 +1,6 @@
 #include "output.h"
 
 #include <gnomon/error.h>
-#include <gnomon/report.h>
 
 #include "fail.h"
 
@@ -46,6 +45,22 @@ void require_folder_of(std::string_view flag, const fs::path& path) {
     }
 }
 
+/// The folder, as "out/" or "out/." name it, too: with a name, to which a suffix can be put.
+fs::path named_folder(fs::path path) {
+    while (path.has_relative_path() && path.has_parent_path() &&
+           (!path.has_filename() || path.filename() == ".")) {
+        path = path.parent_path();
+    }
+    return path;
+}
+
+void refuse_dangling_link(std::string_view flag, const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error)) || fs::exists(path, error)) return;
+    fail_usage("{} {}: is a link to {}, which does not exist; make it, or remove the link", flag,
+               path.string(), fs::read_symlink(path, error).string());
+}
+
 }  // namespace
 
 void print(std::string_view text) {
@@ -76,15 +91,20 @@ void require_output_file(std::string_view flag, const fs::path& path, std::strin
     require_folder_of(flag, path);
 }
 
-void require_output_folder(std::string_view flag, const fs::path& path) {
-    // "out/" names the same folder as "out", but has no file name.
-    const fs::path folder = path.has_filename() ? path : path.parent_path();
-    check_report_folder(folder);
+fs::path require_replaced_folder(std::string_view flag, const fs::path& path,
+                                 void (*check)(const fs::path&)) {
+    fs::path folder = named_folder(path);
+    refuse_dangling_link(flag, folder);
     require_folder_of(flag, folder);
+    check(folder);
+    std::error_code error;
+    if (fs::is_symlink(folder, error)) require_folder_of(flag, fs::canonical(folder, error));
+    return folder;
 }
 
 void require_shared_folder(std::string_view flag, const fs::path& path) {
-    const fs::path folder = path.has_filename() ? path : path.parent_path();
+    const fs::path folder = named_folder(path);
+    refuse_dangling_link(flag, folder);
     std::error_code error;
     if (!fs::exists(folder, error)) {
         require_folder_of(flag, folder);

@@ -26,8 +26,11 @@ void print_warning(std::string_view message);
 void require_output_file(std::string_view flag, const std::filesystem::path& path,
                          std::string_view extension);
 
-/// Likewise for a folder that will be made, or holds a report of ours that will be replaced.
-void require_output_folder(std::string_view flag, const std::filesystem::path& path);
+/// Likewise for a folder that will be made, or that `check` (check_report_folder, ..) allows to be
+/// replaced whole. Returns it without a slash at its end. Throws what `check` throws, too.
+std::filesystem::path require_replaced_folder(std::string_view flag,
+                                              const std::filesystem::path& path,
+                                              void (*check)(const std::filesystem::path&));
 
 /// Likewise for a folder that will be made if it is missing, and keeps what else it holds.
 void require_shared_folder(std::string_view flag, const std::filesystem::path& path);

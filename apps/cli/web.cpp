@@ -29,10 +29,10 @@ struct WebFlags {
 void run_web(const WebFlags& flags) {
     if (flags.bake.empty()) fail_usage("web: BAKE is missing");
     if (flags.output.empty()) fail_usage("web: -o is missing, as in -o page");
-    check_web_folder(flags.output);
-    write_web(flags.output, read_bake(flags.bake), flags.title);
-    print(fmt::format("page: {0}\nto see it: python3 -m http.server --directory {0}\n",
-                      flags.output));
+    const std::string folder =
+        require_replaced_folder("-o", flags.output, check_web_folder).string();
+    write_web(folder, read_bake(flags.bake), flags.title);
+    print(fmt::format("page: {0}\nto see it: python3 -m http.server --directory {0}\n", folder));
 }
 
 }  // namespace

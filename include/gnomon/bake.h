@@ -105,8 +105,8 @@ struct IntervalBake {
 
 /// Bakes on all threads; the result is the same for any number of them. Throws Error{input} for
 /// options out of range, for a `resume_file` that is not of this bake, for a scene without area or
-/// of more texels than fit in memory, saying what would; Error{machine} when the disk of `resume_file` has no room for it; Error{cancelled}, after
-/// it is written.
+/// of more texels than fit in memory, saying what would; Error{machine} when the disk of
+/// `resume_file` has no room for it; Error{cancelled}, after it is written.
 IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
                             Progress& progress);
 
