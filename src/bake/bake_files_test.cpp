@@ -4,6 +4,7 @@
 #include "base/file.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <atomic>
@@ -113,6 +114,91 @@ TEST_F(BakeFiles, DamagedOnesAreErrors) {
     write_file(folder_ / "bake.json", "{\"gnomon_bake\": 1");
     EXPECT_THROW(read_bake(folder_), Error);
     EXPECT_THROW(read_bake(folder_ / "nowhere"), Error);
+}
+
+/// What read_bake() says of a bake whose bake.json has another value at `pointer`.
+std::string error_with(const fs::path& folder, const std::string& pointer,
+                       const nlohmann::json& value) {
+    const auto bytes = read_file(folder / "bake.json", 1 << 24);
+    nlohmann::json json = nlohmann::json::parse(bytes);
+    json[nlohmann::json::json_pointer(pointer)] = value;
+    write_file(folder / "bake.json", json.dump());
+    std::string message = "no error";
+    try {
+        read_bake(folder);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        message = error.what();
+    }
+    write_file(folder / "bake.json", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return message;
+}
+
+TEST_F(BakeFiles, WrongMembersAreNamedWithTheirValuesAndWhatIsAllowed) {
+    write_bake(folder_, cube(BakeBits::eight));
+    const nlohmann::json none = nlohmann::json::array();
+    const nlohmann::json up = {0.0, 1.0, 0.0};
+    const nlohmann::json short_path(60, up), long_path(256, up);
+    struct Case {
+        std::string member;
+        nlohmann::json value;
+        std::string words;
+    };
+    const std::vector<Case> cases{
+        {"/gnomon_bake", 2, "gnomon_bake is 2; it must be 1"},
+        {"/bits", 9, "bits is 9; it must be 8 or 16"},
+        {"/bits", "8", "bits is \"8\"; it must be a whole number"},
+        {"/codes_per_step", 64, "codes_per_step is 64; it must be 1"},
+        {"/path", 3, "path is 3; it must be an object"},
+        {"/path/to_light_ws", none, "path.to_light_ws has 0 entries; it must have 1 to 255"},
+        {"/path/to_light_ws", long_path, "path.to_light_ws has 256 entries; it must have 1 to 255"},
+        {"/path/to_light_ws", short_path, "0 to 60 is allowed"},
+        {"/path/to_light_ws/7", {0, 0, 0}, "path.to_light_ws[7] is [0,0,0]; it must be of length"},
+        {"/path/to_light_ws/7", {0, 1}, "path.to_light_ws[7] has 2 entries; it must have 3"},
+        {"/path/pole_ws", {0, "a", 0}, "path.pole_ws[1] is \"a\"; it must be a number"},
+        {"/path/begin_s", 1e6, "it must be more than path.begin_s, 1000000"},
+        {"/path/begin_s", nullptr, "path.begin_s is null; it must be a number"},
+        {"/path/angular_diameter_rad", -1, "path.angular_diameter_rad is -1; it must be 0 to 3.14"},
+        {"/path/place", 3, "path.place is 3; it must be a text"},
+        {"/pages", none, "pages has 0 entries"},
+        {"/pages/0/pairs", 17, "pages[0].pairs is 17; it must be 1 to 16"},
+        {"/pages/0/pairs", 1.5, "pages[0].pairs is 1.5; it must be a whole number"},
+        {"/pages/0/side_texels", -4, "pages[0].side_texels is -4; it must be 1 to 16384"},
+        {"/pages/0/side_texels", 8, "bake.json says 8x8"},
+        {"/mesh_pages/0", 1, "mesh_pages[0] is 1; it must be 0 to 0"},
+        {"/mesh_pages", {0, 0, 0, 0, 0}, "mesh_pages has 5 entries; it must have 2"},
+        {"/report/texels", -1, "report.texels is -1; it must be 0 to"},
+        {"/report/closed_share", 2, "report.closed_share is 2; it must be 0 to 1"},
+    };
+    for (const Case& c : cases) {
+        const std::string message = error_with(folder_, c.member, c.value);
+        EXPECT_NE(message.find(c.words), std::string::npos) << c.member << ": " << message;
+        EXPECT_TRUE(message.starts_with(folder_.string())) << message;
+    }
+    EXPECT_NO_THROW(read_bake(folder_));
+}
+
+TEST_F(BakeFiles, TexturesOfOtherBitsAreErrors) {
+    write_bake(folder_, cube(BakeBits::sixteen));
+    const auto other = read_file(folder_ / "page0-rise0.png", 1 << 24);
+    write_bake(folder_, cube(BakeBits::eight));
+    write_file(folder_ / "page0-rise0.png",
+               {reinterpret_cast<const char*>(other.data()), other.size()});
+    const std::string message = error_with(folder_, "/bits", 8);
+    EXPECT_NE(message.find("page0-rise0.png: has numbers of 16 bits"), std::string::npos)
+        << message;
+}
+
+TEST_F(BakeFiles, TextThatIsNoJsonIsToldByItsPlace) {
+    write_bake(folder_, cube(BakeBits::eight));
+    write_file(folder_ / "bake.json", "{\n \"bits\": \xff\xfe 8}");
+    try {
+        read_bake(folder_);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.what(),
+                  (folder_ / "bake.json").string() + ": is damaged or no JSON: line 2, column 10");
+    }
 }
 
 TEST_F(BakeFiles, ReplaceNothingButABake) {

@@ -41,6 +41,7 @@ std::vector<std::uint8_t> encode_png16(Extent size, int channels,
 /// RGBA pixels as they are stored, for numbers that are no colours.
 struct Rgba16 {
     Extent size;
+    int bits = 16;  ///< of a value in the file
     std::vector<std::uint16_t> rgba;
 };
 

@@ -158,7 +158,7 @@ Rgba16 decode_png_numbers(std::span<const std::uint8_t> bytes, std::string_view 
     std::vector<std::uint8_t> rows(row_bytes * size.height);
     std::uint8_t* first = rows.data();
     read(reader, name, [&] { read_rows(reader, first, row_bytes); });
-    Rgba16 picture{size, std::vector<std::uint16_t>(row_values * size.height)};
+    Rgba16 picture{size, bits, std::vector<std::uint16_t>(row_values * size.height)};
     if (bits == 16) {
         std::memcpy(picture.rgba.data(), rows.data(), rows.size());
     } else {
