@@ -4,6 +4,7 @@ find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(JPEG REQUIRED)
 # Debian leaves out a part of Imath that its CMake file goes on to tell of.
 set(CMAKE_MESSAGE_LOG_LEVEL WARNING)

@@ -3,7 +3,10 @@
 #include "base/check.h"
 #include "base/file.h"
 
+#include <zlib.h>
+
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -25,7 +28,8 @@ constexpr std::string_view kMagic = "gnomon part ";
 
 /// The beginning of the file. The number of intervals of each texel follows, then the intervals.
 struct Header {
-    std::array<char, 16> magic{"gnomon part 3\n"};
+    std::array<char, 16> magic{"gnomon part 4\n"};
+    std::uint64_t checksum = 0;  ///< of all that follows it: CRC-32
     std::uint64_t fingerprint = 0;
     std::uint64_t texels = 0;     ///< that are done
     std::uint64_t intervals = 0;  ///< of all of them
@@ -35,6 +39,11 @@ using Count = std::uint16_t;
 
 std::uint64_t file_bytes(const Header& header) {
     return sizeof header + header.texels * sizeof(Count) + header.intervals * sizeof(CodedInterval);
+}
+
+std::uint64_t checksum_of(std::span<const std::uint8_t> file) {
+    const auto rest = file.subspan(offsetof(Header, fingerprint));
+    return ::crc32_z(0, rest.data(), rest.size());
 }
 
 template <typename T>
@@ -92,17 +101,10 @@ Unfinished::Unfinished(fs::path file, std::uint64_t fingerprint, std::size_t tex
 std::vector<LitTimes> Unfinished::load() const {
     std::error_code error;
     if (file_.empty() || !fs::exists(file_, error)) return {};
-    // Of a texel: every other step.
-    constexpr std::uint64_t kMostIntervals = (most_steps(BakeBits::sixteen) + 1) / 2;
-    const std::vector<std::uint8_t> bytes =
-        read_file(file_, file_bytes({.texels = texels_, .intervals = texels_ * kMostIntervals}));
+    const std::vector<std::uint8_t> bytes = read_checked();
     Header header;
-    if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
-    bool is_ours = bytes.size() >= sizeof header && header.magic == Header().magic &&
-                   header.fingerprint == fingerprint_ && header.texels <= texels_ &&
-                   header.intervals <= texels_ * kMostIntervals &&
-                   bytes.size() == file_bytes(header);
-    std::vector<LitTimes> times(is_ours ? header.texels : 0);
+    std::memcpy(&header, bytes.data(), sizeof header);
+    std::vector<LitTimes> times(header.texels);
     const std::uint8_t* count_at = bytes.data() + sizeof header;
     const std::uint8_t* at = count_at + times.size() * sizeof(Count);
     std::uint64_t left = header.intervals;
@@ -110,20 +112,52 @@ std::vector<LitTimes> Unfinished::load() const {
         Count count = 0;
         std::memcpy(&count, count_at, sizeof count);
         count_at += sizeof count;
-        is_ours = is_ours && count <= left;
-        if (!is_ours) break;
+        if (count > left) fail_damaged();
         left -= count;
         of_texel.resize(count);
         std::memcpy(of_texel.data(), at, count * sizeof(CodedInterval));
         at += count * sizeof(CodedInterval);
     }
-    if (!is_ours || left != 0) {
+    if (left != 0) fail_damaged();
+    return times;
+}
+
+std::vector<std::uint8_t> Unfinished::read_checked() const {
+    if (!is_unfinished_bake(file_)) {
+        fail_input("{}: is no unfinished bake: move it away, or choose another place for the bake",
+                   file_.string());
+    }
+    Header header;
+    header.magic = {};
+    std::ifstream(file_, std::ios::binary).read(reinterpret_cast<char*>(&header), sizeof header);
+    if (header.magic != Header().magic) {
         fail_input(
-            "{}: holds parts of another bake, or is damaged: remove it, or go on with the "
-            "scene and the flags that it was begun with",
+            "{}: is an unfinished bake of another version of Gnomon, or damaged: delete it and "
+            "begin anew",
             file_.string());
     }
-    return times;
+    // Before its length, which is the other bake's.
+    if (header.fingerprint != fingerprint_) {
+        fail_input(
+            "{}: is the unfinished bake of another scene or of other parameters: go on with those "
+            "that it was begun with, or delete it and begin anew",
+            file_.string());
+    }
+    std::error_code error;
+    // Of a texel: every other step.
+    constexpr std::uint64_t kMostIntervals = (most_steps(BakeBits::sixteen) + 1) / 2;
+    const bool is_likely = header.texels <= texels_ &&
+                           header.intervals <= header.texels * kMostIntervals &&
+                           fs::file_size(file_, error) == file_bytes(header);
+    if (!is_likely) fail_damaged();
+    std::vector<std::uint8_t> bytes = read_file(file_, file_bytes(header));
+    if (bytes.size() != file_bytes(header) || checksum_of(bytes) != header.checksum) fail_damaged();
+    return bytes;
+}
+
+void Unfinished::fail_damaged() const {
+    fail_input("{}: is damaged, and what it kept is lost: delete it and begin anew",
+               file_.string());
 }
 
 void Unfinished::save(std::span<const LitTimes> times) const {
@@ -140,6 +174,9 @@ void Unfinished::save(std::span<const LitTimes> times) const {
     }
     for (const LitTimes& of_texel : times)
         append(bytes, std::span<const CodedInterval>(of_texel));
+    header.checksum =
+        checksum_of({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    std::memcpy(bytes.data(), &header, sizeof header);
     write_file(file_, bytes);
 }
 

@@ -26,6 +26,10 @@ public:
     void save(std::span<const LitTimes> times) const;
 
 private:
+    /// The file, once it is sure that it is whole and of this bake. Throws Error{input}.
+    std::vector<std::uint8_t> read_checked() const;
+    [[noreturn]] void fail_damaged() const;
+
     std::filesystem::path file_;
     std::uint64_t fingerprint_;
     std::size_t texels_;
