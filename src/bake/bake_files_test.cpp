@@ -2,6 +2,7 @@
 #include <gnomon/error.h>
 
 #include "base/file.h"
+#include "lightmap/atlas.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -227,6 +228,24 @@ TEST_F(BakeFiles, AnInterruptedBakeGoesOn) {
     other = options;
     other.resume_file.clear();
     expect_equal(resumed, bake_intervals(scene, summer(64), other, silent));
+}
+
+TEST_F(BakeFiles, ABakeThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItStarts) {
+    const Scene scene = make_builtin_scene("courtyard");
+    BakeOptions options{.texel_size_m = 0.1, .resume_file = {}};
+    // Twice what the light map alone takes, which is a third of what the bake does.
+    options.memory_limit_bytes =
+        2 * lightmap::estimate(scene, {.texel_size_m = options.texel_size_m}).bytes;
+    StopsAt work(0.0);
+    try {
+        bake_intervals(scene, summer(64), options, work);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        EXPECT_NE(std::string(error.what()).find("memory_limit_bytes allows"), std::string::npos)
+            << error.what();
+    }
+    EXPECT_FALSE(work.cancelled());
 }
 
 TEST_F(BakeFiles, PolarNightIsNoBake) {

@@ -210,6 +210,22 @@ bake::FineCells fine_cells(const lightmap::Atlas& atlas, const std::vector<Inter
     return cells;
 }
 
+/// The pieces of memory that a texel's list of times grows through; measured.
+constexpr std::uint64_t kList_bytes = 64;
+
+/// What is held of a texel besides the light map's part, when all texels are done: its receiver,
+/// and the list of its times. Trees of the scene take no more than the light map's own work on
+/// triangles, which is done by then.
+constexpr std::uint64_t kTexel_bytes =
+    sizeof(trace::Receiver) + sizeof(bake::LitTimes) + kList_bytes;
+
+/// Of a place on a page: its texel, where that asks, and all intervals that it may have.
+std::uint64_t place_bytes(const BakeOptions& options) {
+    const std::uint64_t intervals = allowed_intervals(options);
+    return sizeof(std::uint32_t) + sizeof(bake::SamplePlace) +
+           intervals * sizeof(bake::CodedInterval);
+}
+
 }  // namespace
 
 namespace bake {
@@ -222,6 +238,8 @@ BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOpt
         scene,
         {.texel_size_m = options.texel_size_m,
          .memory_limit_bytes = options.memory_limit_bytes,
+         .more_texel_bytes = kTexel_bytes,
+         .more_place_bytes = place_bytes(options),
          .to_light_ws = lookup.lit_sides_only ? path.to_light_ws : std::vector<DVec3>()},
         progress);
     const lightmap::Texels texels = lightmap::make_texels(scene, baked.atlas, progress);

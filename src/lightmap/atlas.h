@@ -22,6 +22,8 @@ struct Options {
     bool keep_texcoords = true;       ///< use a mesh's own coordinates where they serve
     bool back_sides = true;           ///< texels on the backs that light can reach; see Surface
     std::uint64_t memory_limit_bytes = 0;  ///< 0 = the machine's memory
+    /// What is to be held besides at the same time: of each texel, and of each place of a page.
+    std::uint64_t more_texel_bytes = 0, more_place_bytes = 0;
     /// Where light can come from: sides that face none of it get no texels. Empty: from anywhere.
     std::vector<DVec3> to_light_ws = {};
 };
@@ -31,7 +33,8 @@ struct Estimate {
     std::uint64_t texels = 0;       ///< touched by the surface
     std::uint64_t pages = 0;        ///< if none is made smaller than it may be
     unsigned page_side_texels = 0;  ///< of the largest
-    std::uint64_t bytes = 0;        ///< the most that Atlas and Texels hold while they are made
+    std::uint64_t bytes = 0;        ///< the most that Atlas and Texels hold while they are made,
+                                    ///< and what the options say is held besides
 };
 
 /// A triangle on a page.

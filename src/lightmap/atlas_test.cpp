@@ -190,7 +190,7 @@ TEST(Atlas, AHugeRequestIsRefusedWithASizeThatFits) {
     const Scene scene = make_builtin_scene("courtyard");
     Options options{.texel_size_m = 1e-5, .memory_limit_bytes = std::uint64_t{64} << 20};
     const std::string message = error_of(scene, options);
-    EXPECT_NE(message.find("the limit is 64 MiB"), std::string::npos) << message;
+    EXPECT_NE(message.find("memory_limit_bytes allows 64 MiB"), std::string::npos) << message;
     const std::string before = "texel_size_m ";
     const std::size_t at = message.rfind(before);
     ASSERT_NE(at, std::string::npos) << message;
@@ -198,7 +198,20 @@ TEST(Atlas, AHugeRequestIsRefusedWithASizeThatFits) {
     EXPECT_GT(options.texel_size_m, 1e-3);
     EXPECT_LE(estimate(scene, options).bytes, options.memory_limit_bytes);
     options.memory_limit_bytes = 1000;
-    EXPECT_NE(error_of(scene, options).find("raise memory_limit_bytes"), std::string::npos);
+    EXPECT_NE(error_of(scene, options).find("no texel_size_m would fit"), std::string::npos);
+}
+
+TEST(Atlas, EstimatesCountWhatIsHeldBesides) {
+    const Scene scene = make_builtin_scene("courtyard");
+    const Options options{.texel_size_m = 0.2};
+    const Estimate alone = estimate(scene, options);
+    const auto with = [&](Options more) { return estimate(scene, more).bytes - alone.bytes; };
+    Options more = options;
+    more.more_texel_bytes = 100;
+    EXPECT_NEAR(static_cast<double>(with(more)), 100.0 * static_cast<double>(alone.texels), 100.0);
+    more = options;
+    more.more_place_bytes = 100;
+    EXPECT_GT(with(more), 100 * alone.texels);  // pages have gaps between charts
 }
 
 TEST(Atlas, ATriangleLargerThanAPageIsRefusedWithASizeThatFits) {

@@ -117,8 +117,10 @@ Estimate estimate_at(const Survey& survey, const Options& options, double texel_
     estimate.page_side_texels =
         kPageStep * static_cast<unsigned>(std::ceil(std::sqrt(std::min(packed, page)) / kPageStep));
     estimate.page_side_texels = std::min(estimate.page_side_texels, options.max_page_texels);
+    const double more = touched * static_cast<double>(options.more_texel_bytes) +
+                        packed * static_cast<double>(options.more_place_bytes);
     estimate.bytes =
-        whole(touched * (sizeof(Texel) + sizeof(Tile) / kTileTexels) +
+        whole(more + touched * (sizeof(Texel) + sizeof(Tile) / kTileTexels) +
               2.0 * static_cast<double>(survey.faces) * (sizeof(Face) + sizeof(PlacedTriangle)) +
               2.0 * static_cast<double>(survey.charts.size()) * (sizeof(Chart) + sizeof(Facet)) +
               threads * kGridBytes * std::min(largest, page));
@@ -165,12 +167,14 @@ Estimate require_fit(const Scene& scene, const Options& options, Progress& progr
     const double texel_size_m = fitting_texel_size_m(found, options, limit);
     const std::string advice = texel_size_m > 0.0
                                    ? fmt::format("texel_size_m {:.4g} would fit", texel_size_m)
-                                   : "no texel_size_m would fit; raise memory_limit_bytes";
+                                   : "no texel_size_m would fit";
     fail_input(
-        "light map: texel_size_m {} makes {} texels on {} pages, which take {:.0f} MiB; the "
-        "limit is {:.0f} MiB: {}",
+        "light map: texel_size_m {} makes {} texels on {} pages, which take {:.0f} MiB; {} "
+        "{:.0f} MiB: {}",
         options.texel_size_m, estimate.texels, estimate.pages,
-        static_cast<double>(estimate.bytes) / kMiB, static_cast<double>(limit) / kMiB, advice);
+        static_cast<double>(estimate.bytes) / kMiB,
+        options.memory_limit_bytes > 0 ? "memory_limit_bytes allows" : "this machine has",
+        static_cast<double>(limit) / kMiB, advice);
 }
 
 }  // namespace gnomon::lightmap

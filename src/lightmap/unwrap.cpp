@@ -107,7 +107,7 @@ private:
         if (side_m <= max_chart_m(options_)) return;
         fail_input(
             "mesh \"{}\": a triangle of {:.4g} x {:.4g} m is larger than a page of {} texels "
-            "of {} m; texel_size_m must be at least {:.4g}, or max_page_texels larger",
+            "of {} m; texel_size_m must be at least {:.4g}",
             mesh_.name, side_m, chart.size_m.y, options_.max_page_texels, options_.texel_size_m,
             1.001 * side_m / max_chart_m(options_) * options_.texel_size_m);
     }
