@@ -37,6 +37,7 @@ class CliTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, errors[0], told)
         self.assertFalse(result.stdout, told)
+        return errors[0]
 
     def assert_works(self, *args, **options):
         result = gnomon(*args, **options)

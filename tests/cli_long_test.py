@@ -198,6 +198,20 @@ class Bake(CliTest):
         self.assertEqual(self.content("day"), self.content("whole"))
         self.assertFalse(kept.exists())
 
+    def test_a_bake_that_does_not_fit_is_refused_before_it_starts(self):
+        for command in (("bake", "courtyard", *self.SUN), ("sun", "courtyard", *Sun.DAY)):
+            told = self.assert_fails(INPUT, ["--texel 1e-05 makes", "this machine has", "--texel", "would fit"],
+                                     *command, "--texel", "1e-5", "-o", self.folder / "day")
+            self.assertNotIn("texel_size_m", told)
+        self.assertEqual(self.files(), [])
+
+    def test_a_triangle_larger_than_a_page_is_told_by_the_flag(self):
+        plane = self.folder / "plane.obj"  # long, but of few texels
+        plane.write_text("v 0 0 0\nv 900 0 0\nv 900 0 2\nf 1 2 3\n", encoding="utf-8")
+        told = self.assert_fails(INPUT, ["a triangle of", "--texel must be at least"], "bake", plane, *self.SUN,
+                                 "--texel", 0.1, "-o", self.folder / "day")
+        self.assertNotIn("max_page_texels", told)
+
     def test_a_slash_after_the_folder_is_no_part_of_its_name(self):
         self.bake(*self.SUN)
         before = self.content()

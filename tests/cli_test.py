@@ -6,10 +6,11 @@ import json
 import os
 import resource
 import signal
+import subprocess
 import sys
 import unittest
 
-from cli_case import CLI, DONE, INPUT, MACHINE, SMALL, CliTest, gnomon
+from cli_case import CLI, DONE, INPUT, MACHINE, SMALL, TIMEOUT_S, CliTest, gnomon
 
 COMMANDS = ("info", "scene", "render", "compare", "bench", "bake", "sun", "web")
 NOBODY = 65534
@@ -177,6 +178,14 @@ class Input(CliTest):
             except PermissionError:
                 self.skipTest("runs as root, and nobody else may run the program")
         self.fails(["secret.glb"], secret, **options)
+
+
+    def test_bytes_that_are_no_text_are_not_passed_on(self):
+        name = "caf\u00e9 " + os.fsdecode(b"\xff\xc3(") + ".glb"
+        command = [CLI, "info", "--scene", name]
+        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=TIMEOUT_S, check=False)
+        self.assertEqual(result.returncode, INPUT)
+        self.assertEqual(result.stderr.decode("utf-8").splitlines(), ["error: caf\u00e9 ??(.glb: no such file"])
 
 
 class Output(CliTest):

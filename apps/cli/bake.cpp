@@ -145,7 +145,8 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
     options.resume_file = part;
     std::error_code ignored;
     try {
-        const IntervalBake bake = bake_intervals(scene, path, options, progress);
+        const IntervalBake bake =
+            naming_texel_flag([&] { return bake_intervals(scene, path, options, progress); });
         progress.clear();
         for (const std::string& warning : bake.report.warnings)
             print_warning(warning);

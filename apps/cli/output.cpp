@@ -20,11 +20,34 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// How many bytes of UTF-8 the text's first character takes; 0 when it begins with none.
+std::size_t character_bytes(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    if (byte(0) < 0x80) return 1;
+    const std::size_t bytes = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+    // What would be longer than it need be (0xc0, 0xc1), or above the last character.
+    if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < bytes) return 0;
+    for (std::size_t i = 1; i < bytes; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    }
+    return bytes;
+}
+
+/// The text with "?" for control characters and for bytes that are no text.
+std::string printable(std::string_view text) {
+    std::string printable;
+    while (!text.empty()) {
+        const std::size_t bytes = character_bytes(text);
+        const auto first = static_cast<unsigned char>(text.front());
+        const bool is_control = first < ' ' || first == 0x7f;
+        printable += bytes == 0 || is_control ? std::string_view("?") : text.substr(0, bytes);
+        text.remove_prefix(std::max<std::size_t>(bytes, 1));
+    }
+    return printable;
+}
+
 void print_line(std::string_view start, std::string_view message) {
-    std::string line = fmt::format("{}: {}", start, message);
-    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-    std::replace_if(line.begin(), line.end(), is_control, '?');
-    line += '\n';
+    const std::string line = fmt::format("{}: {}\n", start, printable(message));
     std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

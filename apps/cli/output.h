@@ -16,8 +16,8 @@ struct ReaderGone : std::runtime_error {
 /// Throws Error{machine} when it cannot be (disk full), ReaderGone when it is a closed pipe.
 void print(std::string_view text);
 
-/// One line on standard error, "error: ..." or "warning: ...". Control characters in names from
-/// files are shown as "?", so that a line stays a line.
+/// One line on standard error, "error: ..." or "warning: ...". Control characters and bytes that
+/// are no UTF-8, in names from files, are shown as "?", so that a line stays a line of text.
 void print_error(std::string_view message);
 void print_warning(std::string_view message);
 

@@ -166,7 +166,7 @@ std::vector<Job> count_hours(const Scene& scene, const SunFlags& flags,
         jobs.push_back(
             {"texels_",
              given ? "" : fmt::format("--texel {:.4g} was chosen from the scene's area\n", texel_m),
-             sun_hours(scene, texel_m, options, progress)});
+             naming_texel_flag([&] { return sun_hours(scene, texel_m, options, progress); })});
     }
     if (jobs.size() == 1) jobs.front().prefix.clear();
     return jobs;
