@@ -161,6 +161,14 @@ class Bake(CliTest):
         middle = path["to_light_ws"][16]  # of step 16: 8.25 s, just past the key overhead
         self.assertGreater(middle[1], 0.999)
 
+    def test_the_clock_is_told(self):
+        told = self.bake(*self.SUN)
+        self.assertIn("clocks at UTC+01:00, the sun's own nearest hour (utc=)\n", told)
+        self.assertEqual(json.loads(self.content()["bake.json"])["path"]["utc_offset"], "+01:00")
+        told = self.bake("--sun", f"{self.SUN[1]},utc=+02:00")
+        self.assertNotIn("clocks", told)
+        self.assertEqual(json.loads(self.content()["bake.json"])["path"]["utc_offset"], "+02:00")
+
     def test_what_is_missing_or_wrong(self):
         def fails(words, *flags):
             self.assert_fails(INPUT, words, "bake", "cube", *flags, "-o", self.folder / "day")

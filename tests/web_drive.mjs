@@ -75,6 +75,7 @@ const start = async () => {
 
 const judge = async () => {
   seen.title = await page.title();
+  seen.zone = await page.locator("#zone").innerText();
   seen.heading = await page.locator("header").innerText();
 
   seen.times_s = [];

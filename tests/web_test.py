@@ -166,6 +166,9 @@ class Page(unittest.TestCase):
         for words in (TITLE, "48.137° N, 11.575° E", "21 June 2026"):
             self.assertIn(words, self.seen["heading"])
 
+    def test_tells_the_clocks_offset(self):
+        self.assertEqual(self.seen["zone"], "UTC+01:00")
+
     def test_shader_has_the_bakes_visibility(self):
         # GLSL ES lets asin err by 2^-11, twice in a difference, over pi; half a grey level of 8 bits
         # is more than that and less than can be seen.

@@ -49,7 +49,12 @@ int steps_of(const KeyValues& values, int bits) {
                                           {1, static_cast<double>(most)}));
 }
 
-BakePath sun_path_of(const BakeFlags& flags) {
+struct PathAndNote {
+    BakePath path;
+    std::string note;  ///< what was assumed, in lines
+};
+
+PathAndNote sun_path_of(const BakeFlags& flags) {
     constexpr std::array<Key, 5> kKeys{
         {{"place", true}, {"date", true}, {"utc"}, {"north"}, {"steps"}}};
     const KeyValues sun("--sun", flags.sun, kKeys, "place=48.137,11.575,date=2026-06-21");
@@ -61,11 +66,16 @@ BakePath sun_path_of(const BakeFlags& flags) {
     const std::chrono::minutes offset =
         sun.has("utc") ? parse_utc_offset(sun.label("utc"), sun.text("utc", ""))
                        : nearest_utc_offset(place);
-    return bake_path(sun_path(place, date, offset, options), sun.text("place", ""),
-                     sun.text("date", ""));
+    const std::string note =
+        sun.has("utc") ? ""
+                       : fmt::format("clocks at UTC{}, the sun's own nearest hour (utc=)\n",
+                                     utc_offset_text(offset));
+    return {bake_path(sun_path(place, date, offset, options), sun.text("place", ""),
+                      sun.text("date", "")),
+            note};
 }
 
-BakePath light_path_of(const BakeFlags& flags) {
+PathAndNote light_path_of(const BakeFlags& flags) {
     constexpr std::array<Key, 3> kKeys{{{"path", true}, {"diameter"}, {"steps"}}};
     const KeyValues light("--light", flags.light, kKeys, "path=sweep.json");
     const double diameter_deg = light.number("diameter", {0.0, 180.0, "degrees"}, 0.0);
@@ -73,7 +83,7 @@ BakePath light_path_of(const BakeFlags& flags) {
     const std::string file = light.text("path", "");
     const LightPath path = read_light_path(file);
     try {
-        return bake_path(path, steps, std::numbers::pi / 180.0 * diameter_deg);
+        return {bake_path(path, steps, std::numbers::pi / 180.0 * diameter_deg), ""};
     } catch (const Error& error) {
         fail_usage("{}: {}", file, error.what());
     }
@@ -132,9 +142,10 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
     const fs::path folder = require_replaced_folder("-o", flags.output, check_bake_folder);
     const fs::path part = unfinished_file(folder);
     require_unfinished_file(part, flags.resume);
-    const BakePath path = flags.light.empty() ? sun_path_of(flags) : light_path_of(flags);
+    const PathAndNote chosen = flags.light.empty() ? sun_path_of(flags) : light_path_of(flags);
+    const BakePath& path = chosen.path;
     if (path.steps() == 0) {
-        print(fmt::format("{}\nno sun, no bake\n", path.summary));
+        print(fmt::format("{}{}\nno sun, no bake\n", chosen.note, path.summary));
         return;
     }
     BakeOptions options{.texel_size_m = flags.texel_m,
@@ -152,7 +163,7 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
             print_warning(warning);
         write_bake(folder, bake);
         if (is_unfinished_bake(part)) fs::remove(part, ignored);
-        print(summary(bake, folder.string()));
+        print(chosen.note + summary(bake, folder.string()));
     } catch (const Error& error) {
         const bool is_kept = fs::exists(part, ignored);
         if (error.kind() == ErrorKind::input || !is_kept) throw;

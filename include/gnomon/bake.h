@@ -6,9 +6,11 @@
 #include <gnomon/scene.h>
 #include <gnomon/sun.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +26,11 @@ struct BakePath {
     DVec3 pole_ws{0.0, 1.0, 0.0};       ///< what the light turns about, as near as can be
     double begin_s = 0.0, end_s = 0.0;  ///< the clock before the first step and after the last,
                                         ///< since local midnight
-    double angular_diameter_rad = 0.0;  ///< of the light's disc
-    std::string place, date;            ///< as the user gave them; empty for a light that is no sun
-    std::string summary;                ///< in words, one line
+    std::optional<std::chrono::minutes> utc_offset;  ///< of that clock; none for a light that is
+                                                     ///< no sun
+    double angular_diameter_rad = 0.0;               ///< of the light's disc
+    std::string place, date;  ///< as the user gave them; empty for a light that is no sun
+    std::string summary;      ///< in words, one line
 
     int steps() const { return static_cast<int>(to_light_ws.size()); }
 };

@@ -63,14 +63,16 @@ ordered_json json_of(const BakePath& path) {
     ordered_json directions = ordered_json::array();
     for (const DVec3& d : path.to_light_ws)
         directions.push_back({d.x, d.y, d.z});
-    return {{"place", path.place},
-            {"date", path.date},
-            {"summary", path.summary},
-            {"begin_s", path.begin_s},
-            {"end_s", path.end_s},
-            {"angular_diameter_rad", path.angular_diameter_rad},
-            {"pole_ws", {path.pole_ws.x, path.pole_ws.y, path.pole_ws.z}},
-            {"to_light_ws", directions}};
+    ordered_json json = {{"place", path.place},
+                         {"date", path.date},
+                         {"summary", path.summary},
+                         {"begin_s", path.begin_s},
+                         {"end_s", path.end_s},
+                         {"angular_diameter_rad", path.angular_diameter_rad},
+                         {"pole_ws", {path.pole_ws.x, path.pole_ws.y, path.pole_ws.z}},
+                         {"to_light_ws", directions}};
+    if (path.utc_offset) json["utc_offset"] = utc_offset_text(*path.utc_offset);
+    return json;
 }
 
 ordered_json json_of(const BakeReport& report) {
@@ -109,6 +111,11 @@ BakePath path_of(const JsonMember& json, BakeBits bits) {
         .place = json.at("place").text(),
         .date = json.at("date").text(),
         .summary = json.at("summary").text()};
+    // Bakes of earlier versions have none.
+    if (json.has("utc_offset")) {
+        const JsonMember offset = json.at("utc_offset");
+        path.utc_offset = parse_utc_offset(offset.label(), offset.text());
+    }
     if (!(path.end_s > path.begin_s))
         json.at("end_s").fail(fmt::format("more than path.begin_s, {:.7g}", path.begin_s));
     const auto most = static_cast<std::size_t>(most_steps(bits));

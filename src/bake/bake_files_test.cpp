@@ -69,6 +69,7 @@ void expect_equal(const IntervalBake& a, const IntervalBake& b) {
     EXPECT_EQ(a.mesh_pages, b.mesh_pages);
     EXPECT_EQ(a.path.to_light_ws, b.path.to_light_ws);
     EXPECT_EQ(a.path.summary, b.path.summary);
+    EXPECT_EQ(a.path.utc_offset, b.path.utc_offset);
     EXPECT_EQ(a.report.intervals, b.report.intervals);
     ASSERT_EQ(a.pages.size(), b.pages.size());
     for (std::size_t p = 0; p < a.pages.size(); ++p) {
@@ -161,6 +162,7 @@ TEST_F(BakeFiles, WrongMembersAreNamedWithTheirValuesAndWhatIsAllowed) {
         {"/path/begin_s", nullptr, "path.begin_s is null; it must be a number"},
         {"/path/angular_diameter_rad", -1, "path.angular_diameter_rad is -1; it must be 0 to 3.14"},
         {"/path/place", 3, "path.place is 3; it must be a text"},
+        {"/path/utc_offset", "CET", "path.utc_offset: \"CET\" is no UTC offset"},
         {"/pages", none, "pages has 0 entries"},
         {"/pages/0/pairs", 17, "pages[0].pairs is 17; it must be 1 to 16"},
         {"/pages/0/pairs", 1.5, "pages[0].pairs is 1.5; it must be a whole number"},

@@ -31,6 +31,7 @@ BakePath bake_path(const SunPath& path, std::string place, std::string date) {
     result.place = std::move(place);
     result.date = std::move(date);
     result.summary = path.summary;
+    result.utc_offset = path.noon.utc_offset;
     if (path.steps.empty()) return result;
     for (const SunStep& step : path.steps)
         result.to_light_ws.push_back(step.to_sun_ws);

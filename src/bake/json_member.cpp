@@ -73,8 +73,11 @@ void JsonMember::fail(std::string_view allowed) const {
     constexpr std::size_t kMostQuoted = 60;
     std::string value = json_->dump(-1, ' ', true);
     if (value.size() > kMostQuoted) value = value.substr(0, kMostQuoted) + "..";
-    fail_input("{}: {} is {}; it must be {}", file_, name_.empty() ? "the text" : name_, value,
-               allowed);
+    fail_input("{} is {}; it must be {}", label(), value, allowed);
+}
+
+std::string JsonMember::label() const {
+    return fmt::format("{}: {}", file_, name_.empty() ? "the text" : name_);
 }
 
 }  // namespace gnomon::bake

@@ -29,6 +29,9 @@ public:
     std::int64_t integer(std::int64_t least, std::int64_t most) const;
     std::string text() const;
 
+    /// File and member, for a message.
+    std::string label() const;
+
     /// `allowed`: "8 or 16".
     [[noreturn]] void fail(std::string_view allowed) const;
 

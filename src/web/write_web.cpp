@@ -84,6 +84,7 @@ ordered_json json_of(const IntervalBake& bake, const std::string& title) {
             {"place", path.place},
             {"date", path.date},
             {"summary", path.summary},
+            {"utc_offset", path.utc_offset ? utc_offset_text(*path.utc_offset) : ""},
             {"begin_s", path.begin_s},
             {"end_s", path.end_s},
             {"bits", static_cast<int>(bake.bits)},

@@ -47,6 +47,7 @@ class Page {
     document.title = bake.title;
     by("title").textContent = bake.title;
     by("where").textContent = [words.place(bake.place), words.date(bake.date)].filter(Boolean).join(" · ");
+    by("zone").textContent = bake.utc_offset ? `UTC${bake.utc_offset}` : "";
     by("begin").textContent = this.clock(bake.begin_s);
     by("end").textContent = this.clock(bake.end_s);
     const step = Math.min(SLIDER_STEP_S, (bake.end_s - bake.begin_s) / LEAST_SLIDER_STEPS);
