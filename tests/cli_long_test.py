@@ -161,6 +161,11 @@ class Bake(CliTest):
         middle = path["to_light_ws"][16]  # of step 16: 8.25 s, just past the key overhead
         self.assertGreater(middle[1], 0.999)
 
+    def test_help_has_the_defaults(self):
+        told = " ".join(self.assert_works("bake", "--help").split())
+        for words in ("metres (default 0.1)", "16 (default 8)", "each (default 4)"):
+            self.assertIn(words, told)
+
     def test_the_clock_is_told(self):
         told = self.bake(*self.SUN)
         self.assertIn("clocks at UTC+01:00, the sun's own nearest hour (utc=)\n", told)

@@ -33,6 +33,14 @@ class Documentation(unittest.TestCase):
         rows = re.findall(r"^\| \[`(\w+)`\]", text(ROOT / "README.md"), re.MULTILINE)
         self.assertEqual(rows, techniques())
 
+    def test_flags_of_bakes_are_on_their_page(self):
+        flags = set()
+        for command in ("bake", "web"):
+            flags |= set(re.findall(r'"(?:-o,)?(--[a-z-]+)"', text(ROOT / f"apps/cli/{command}.cpp")))
+        self.assertGreater(len(flags), 7)
+        page = text(ROOT / "docs/bakes.md").replace("-o DIR", "--output")
+        self.assertEqual([flag for flag in sorted(flags) if flag not in page], [])
+
     def test_links_lead_somewhere(self):
         for page in PAGES:
             for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text(page)):

@@ -186,10 +186,11 @@ Command add_bake(CLI::App& program) {
     app->add_option("--light", flags->light,
                     "path=FILE.json[,diameter=..][,steps=..]: another light, by key frames")
         ->type_name("PATH");
-    add_number(*app, "--texel", flags->texel_m, {1e-6, 1e6}, "side of a texel, metres");
-    add_integer(*app, "--bits", flags->bits, {8, 16}, "of a time: 8, or 16");
+    add_number(*app, "--texel", flags->texel_m, {1e-6, 1e6},
+               "side of a texel, metres (default 0.1)");
+    add_integer(*app, "--bits", flags->bits, {8, 16}, "of a time: 8, or 16 (default 8)");
     add_integer(*app, "--pairs", flags->pairs, {1, 16},
-                "most pairs of textures, four intervals each");
+                "most pairs of textures, four intervals each (default 4)");
     app->add_flag("--ignore-alpha", flags->ignore_alpha, "take masked materials for solid");
     app->add_flag("--resume", flags->resume, "go on with an interrupted bake");
     app->add_option("-o,--output", flags->output, "the folder to write")->type_name("DIR");
