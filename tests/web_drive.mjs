@@ -87,7 +87,7 @@ const judge = async () => {
     const { bake, view } = window.gnomon;
     const image = (index, time_s, shift) => ({ index, time_s, shift, values: view.visibilityImage(index, time_s, shift) });
     return bake.pages.flatMap((_, index) =>
-      [times_s[0], bake.begin_s + 120].flatMap((time_s) => [image(index, time_s, 0), image(index, time_s, 0.5)]),
+      [times_s[0], bake.begin_s, bake.begin_s + 120, bake.end_s].flatMap((time_s) => [image(index, time_s, 0), image(index, time_s, 0.5)]),
     );
   }, seen);
 

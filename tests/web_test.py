@@ -70,6 +70,8 @@ def paeth(a, b, c):
 class Bake:
     """A bake's files, as docs/bakes.md tells of them."""
 
+    closed = False  # whether the path's first step comes after its last
+
     def __init__(self, folder):
         self.json = json.loads((folder / "bake.json").read_text(encoding="utf-8"))
         self.path = self.json["path"]
@@ -104,7 +106,9 @@ class Bake:
         def before(time):
             c = min(max((time - self.step(time_s)) / (self.width_steps() / 2), -1), 1)
             return 0.5 + (c * math.sqrt(1 - c * c) + math.asin(c)) / math.pi
-        return min(1, sum(before(f) - before(r) for r, f in self.intervals(page, x, y)))
+        laps = (-self.steps, 0, self.steps) if self.closed else (0,)
+        return min(1, sum(before(f + lap) - before(r + lap)
+                          for r, f in self.intervals(page, x, y) for lap in laps))
 
 
 def clock(time_s, seconds=False):
@@ -135,18 +139,22 @@ def visit(site, folder):
     return {**json.loads((folder / "seen.json").read_text(encoding="utf-8")), "url": url}
 
 
+def require_browser():
+    if not (PACKAGES / "node_modules/playwright-core").is_dir():
+        raise unittest.SkipTest("the build has no playwright-core: node, npm or their registry was missing")
+    if "built without its page" in gnomon("web", "none", "-o", "none", ok=False).stderr:
+        raise unittest.SkipTest("gnomon web is left out of this build")
+    if not CHROMIUM:
+        raise unittest.SkipTest("chromium is not installed")
+
+
 class Page(unittest.TestCase):
     """The page of the cube, whose shadow falls on a plane, as 8 bits hold it."""
     BITS = 8
 
     @classmethod
     def setUpClass(cls):
-        if not (PACKAGES / "node_modules/playwright-core").is_dir():
-            raise unittest.SkipTest("the build has no playwright-core: node, npm or their registry was missing")
-        if "built without its page" in gnomon("web", "none", "-o", "none", ok=False).stderr:
-            raise unittest.SkipTest("gnomon web is left out of this build")
-        if not CHROMIUM:
-            raise unittest.SkipTest("chromium is not installed")
+        require_browser()
         temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(temporary.cleanup)
         cls.folder = pathlib.Path(temporary.name)
@@ -312,6 +320,28 @@ class Page(unittest.TestCase):
 class Page16(Page):
     """The same in 16 bits, whose codes are a 64th of a step."""
     BITS = 16
+
+
+class PolarDay(unittest.TestCase):
+    """24 hours of sun, whose end is its begin."""
+
+    def test_is_lit_at_its_ends(self):
+        require_browser()
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            gnomon("bake", "cube", "--sun", "place=90,0,date=2026-06-21", "--texel", "0.25", "-o", folder / "bake")
+            gnomon("web", folder / "bake", "-o", folder / "page")
+            bake = Bake(folder / "bake")
+            bake.closed = True
+            seen = visit(folder / "page", folder)
+        ends = [image for image in seen["visibility"]
+                if image["time_s"] in (bake.path["begin_s"], bake.path["end_s"]) and not image["shift"]]
+        self.assertEqual(len(ends), 2 * len(bake.pages))
+        for image in ends:
+            side = bake.pages[image["index"]][0]
+            truth = [bake.visibility(image["index"], i % side, i // side, image["time_s"]) for i in range(side * side)]
+            self.assertEqual(max(truth), 1)
+            self.assertLess(max(abs(a - b) for a, b in zip(truth, image["values"])), 0.5 / 255)
 
 
 class Files(unittest.TestCase):

@@ -127,12 +127,26 @@ void check_bake_folder(const std::filesystem::path& folder);
 /// Throws Error{input} naming the file and the fault.
 IntervalBake read_bake(const std::filesystem::path& folder);
 
+/// What a window that reaches beyond its path's ends finds there: what is lit or dark at an end on.
+struct PathEnds {
+    double path_steps = 0.0;  ///< the length of the path, if anything below is true
+    bool closed = false;      ///< the first step comes after the last, as in 24 hours of sun
+    /// Otherwise: what the light shines on at that end it goes on to shine on. Else it is below the
+    /// horizon there, and all is dark.
+    bool begins_up = false, ends_up = false;
+};
+
+/// Of a path whose up is +Y: it closes when the last step leads to the first, and an end is up when
+/// the sun's whole disc would be.
+PathEnds path_ends(const BakePath& path);
+
 /// The part of the path that a light covers.
 struct LightWindow {
     double at_step = 0.0;      ///< of its centre
     double width_steps = 0.0;  ///< of its disc
     int codes_per_step = 1;    ///< of the bake
     bool even = false;  ///< as if it were a line along the path, as in listing 13-1, not a disc
+    PathEnds ends{};
 };
 
 /// How much of the light the texel sees, in [0, 1].

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace gnomon {
@@ -283,12 +284,22 @@ IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const Bake
 double interval_visibility(const IntervalPage& page, unsigned x, unsigned y,
                            const LightWindow& window) {
     const std::size_t texel = std::size_t{y} * page.side_texels + x;
+    constexpr double kAlways = std::numeric_limits<double>::infinity();
     const double codes = window.codes_per_step;
+    const PathEnds& ends = window.ends;
+    const bake::WindowPlaces places = bake::window_places(window);
     double seen = 0.0;
     for (std::size_t i = 0; i < kIntervalsPerPair * static_cast<std::size_t>(page.pairs); ++i) {
         const std::size_t at = bake::value_index(page, texel, i);
-        seen += bake::seen_part(page.rises[at], page.falls[at], window.at_step * codes,
-                                window.width_steps * codes, window.even);
+        double rise = page.rises[at];
+        double fall = page.falls[at];
+        if (fall <= rise) continue;
+        if (!ends.closed && ends.begins_up && rise == 0.0) rise = -kAlways;
+        if (!ends.closed && ends.ends_up && fall == ends.path_steps * codes) fall = kAlways;
+        for (std::size_t place = 0; place < places.count; ++place) {
+            seen += bake::seen_part(rise, fall, places.at[place], window.width_steps * codes,
+                                    window.even);
+        }
     }
     return std::min(seen, 1.0);
 }

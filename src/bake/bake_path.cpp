@@ -4,7 +4,9 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -23,7 +25,43 @@ DVec3 axis_of(const std::vector<DVec3>& directions) {
     return length > 0.0 ? sum / length : DVec3(0.0, 1.0, 0.0);
 }
 
+/// In steps. A day's declination moves the sun by up to 0.007 rad from its last step to its first,
+/// as much as it turns in the shortest steps there can be.
+constexpr double kMostGap = 2.0;
+/// Fewer than so many lead from the last to the first whatever their way.
+constexpr std::size_t kLeastClosed = 4;
+/// The sine of the elevation above which the disc of the sun is up.
+constexpr double kUp = 0.005;
+
+double angle_between(DVec3 a, DVec3 b) {
+    // The sine's half is exact for small angles, where the cosine is not.
+    return 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
+}
+
+/// Half a step before the first direction, by the parabola through the first three.
+double height_before(DVec3 first, DVec3 second, DVec3 third) {
+    return (15.0 * first.y - 10.0 * second.y + 3.0 * third.y) / 8.0;
+}
+
 }  // namespace
+
+PathEnds path_ends(const BakePath& path) {
+    const std::vector<DVec3>& d = path.to_light_ws;
+    const std::size_t count = d.size();
+    if (count == 0) return {};
+    const std::size_t last = count - 1;
+    const std::size_t second = std::min<std::size_t>(1, last);
+    const std::size_t third = std::min<std::size_t>(2, last);
+    PathEnds ends{.path_steps = static_cast<double>(count)};
+    ends.begins_up = height_before(d[0], d[second], d[third]) > kUp;
+    ends.ends_up = height_before(d[last], d[last - second], d[last - third]) > kUp;
+    if (count < kLeastClosed || !ends.begins_up || !ends.ends_up) return ends;
+    double turned_rad = 0.0;
+    for (std::size_t k = 1; k < count; ++k)
+        turned_rad += angle_between(d[k - 1], d[k]);
+    ends.closed = angle_between(d[last], d[0]) <= kMostGap * turned_rad / static_cast<double>(last);
+    return ends;
+}
 
 BakePath bake_path(const SunPath& path, std::string place, std::string date) {
     BakePath result;

@@ -59,6 +59,7 @@ PathThrough circle_through(DVec3 to_light_ws, DVec3 pole_ws, DVec3 up_ws, int st
     for (int i = 0; i < steps; ++i)
         result.path.to_light_ws.push_back(circle.at(half * (2.0 * (i + 0.5) / steps - 1.0)));
     result.steps_per_rad = steps / (2.0 * half * circle.radius);
+    result.ends = {.path_steps = static_cast<double>(steps), .closed = half == std::numbers::pi};
     return result;
 }
 
@@ -74,8 +75,10 @@ double step_on(const PathThrough& path, DVec3 to_light_ws, double tolerance_rad)
     // Along the circle from the middle of the nearest step.
     const DVec3 along = glm::cross(path.path.pole_ws, *nearest);
     const double ahead = glm::dot(to_light - *nearest, along) / glm::length(along);
+    if (std::abs(ahead * path.steps_per_rad) > 1.0) return -1.0;
     const double result = step + 0.5 + ahead * path.steps_per_rad;
-    return std::abs(ahead * path.steps_per_rad) <= 1.0 ? result : -1.0;
+    if (!path.ends.closed) return result;
+    return result - path.ends.path_steps * std::floor(result / path.ends.path_steps);
 }
 
 }  // namespace gnomon::bake

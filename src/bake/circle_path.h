@@ -8,6 +8,7 @@ namespace gnomon::bake {
 struct PathThrough {
     BakePath path;
     double steps_per_rad = 0.0;  ///< of the light's way across the sky
+    PathEnds ends{};
 };
 
 /// The circle about the pole through a direction, which is the sun's way of a day but for the
@@ -17,7 +18,7 @@ struct PathThrough {
 PathThrough circle_through(DVec3 to_light_ws, DVec3 pole_ws, DVec3 up_ws, int steps);
 
 /// Where a direction is on a path that circle_through() made, when it is on its circle: within
-/// `tolerance_rad`; else negative.
+/// `tolerance_rad`; else negative. Less than the number of steps on a whole circle.
 double step_on(const PathThrough& path, DVec3 to_light_ws, double tolerance_rad);
 
 }  // namespace gnomon::bake

@@ -48,6 +48,13 @@ std::uint64_t close_gaps(LitTimes& intervals, std::size_t most) {
     return closed;
 }
 
+WindowPlaces window_places(const LightWindow& window) {
+    const double at = window.at_step * window.codes_per_step;
+    if (!window.ends.closed) return {.at = {at}};
+    const double path = window.ends.path_steps * window.codes_per_step;
+    return {.at = {at, at < 0.5 * path ? at + path : at - path}, .count = 2};
+}
+
 double seen_part(double rise, double fall, double at, double width, bool even) {
     if (!(fall > rise)) return 0.0;
     if (!(width > 0.0)) return at >= rise && at < fall ? 1.0 : 0.0;

@@ -36,6 +36,7 @@ constexpr std::size_t kNone = kMostIntervals;
 struct Times {
     std::array<float, kMostIntervals> values;
     std::size_t count = 0;
+    std::size_t end = kNone;  ///< the one that is no edge but the end of a closed path
 
     void add(float time) {
         assert(count < kMostIntervals);
@@ -46,6 +47,7 @@ struct Times {
         std::size_t best = kNone;
         float least = std::numeric_limits<float>::infinity();
         for (std::size_t i = 0; i < count; ++i) {
+            if (i == end) continue;
             const float apart = std::abs(values[i] - time);
             if (apart >= least) break;  // they are in order: the rest are farther
             least = apart;
@@ -72,6 +74,17 @@ Edges edges_of(const IntervalPage& page, std::size_t texel) {
         if (page.rises[at] == IntervalPage::kNoRise) break;
         edges.add(page.rises[at], page.falls[at]);
     }
+    return edges;
+}
+
+/// The same on a closed path: what is lit at both of its ends goes on over them.
+Edges closed_edges_of(const IntervalPage& page, std::size_t texel, double path_codes) {
+    Edges edges = edges_of(page, texel);
+    const std::size_t count = edges.rises.count;
+    if (count == 0 || edges.rises.values[0] > 0.0f) return edges;
+    if (static_cast<double>(edges.falls.values[count - 1]) < path_codes) return edges;
+    edges.rises.end = 0;
+    edges.falls.end = count - 1;
     return edges;
 }
 
@@ -142,6 +155,7 @@ struct MovedEdge {
 
 MovedEdge moved(std::span<const Times, 4> times, const BetweenTexels& between, std::size_t texel,
                 std::size_t edge) {
+    if (edge == times[texel].end) return {.time = static_cast<double>(times[texel].values[edge])};
     Plane plane;
     double weight = 0.0;
     double sum = 0.0;
@@ -160,11 +174,15 @@ MovedEdge moved(std::span<const Times, 4> times, const BetweenTexels& between, s
     return result;
 }
 
-/// The part of the window that comes after an edge.
-double part_after(const MovedEdge& edge, const LightWindow& window) {
-    const double codes = window.codes_per_step;
-    return seen_part(edge.time, std::numeric_limits<double>::max(), window.at_step * codes,
-                     window.width_steps * codes * (window.even ? 1.0 : edge.slowness), window.even);
+/// The part of the window that comes after an edge, at its places one after the other.
+double part_after(const MovedEdge& edge, const LightWindow& window, const WindowPlaces& places) {
+    const double width = window.width_steps * window.codes_per_step;
+    double sum = 0.0;
+    for (std::size_t place = 0; place < places.count; ++place) {
+        sum += seen_part(edge.time, std::numeric_limits<double>::max(), places.at[place],
+                         width * (window.even ? 1.0 : edge.slowness), window.even);
+    }
+    return sum;
 }
 
 }  // namespace
@@ -206,16 +224,19 @@ double edges_visibility(const IntervalPage& page, const BetweenTexels& between,
     std::array<Times, 4> rises;
     std::array<Times, 4> falls;
     for (std::size_t i = 0; i < between.texels.size(); ++i) {
-        const Edges edges = edges_of(page, between.texels[i]);
+        const Edges edges = window.ends.closed
+                                ? closed_edges_of(page, between.texels[i], between.path_codes)
+                                : edges_of(page, between.texels[i]);
         rises[i] = edges.rises;
         falls[i] = edges.falls;
     }
+    const WindowPlaces places = window_places(window);
     double seen = 0.0;
     for (std::size_t i = 0; i < between.texels.size(); ++i) {
         if (!(between.weights[i] > 0.0)) continue;
         for (std::size_t k = 0; k < rises[i].count; ++k) {
-            seen += between.weights[i] * (part_after(moved(rises, between, i, k), window) -
-                                          part_after(moved(falls, between, i, k), window));
+            seen += between.weights[i] * (part_after(moved(rises, between, i, k), window, places) -
+                                          part_after(moved(falls, between, i, k), window, places));
         }
     }
     return std::clamp(seen, 0.0, 1.0);

@@ -20,6 +20,7 @@ struct Window {
     float at_codes;
     float width_codes;
     float path_codes;
+    bool closed;             // see PathEnds
     mat2 normal_from_slope;  // see bake::normal_from_slope()
 };
 
@@ -50,6 +51,13 @@ float part_after(float ahead_codes, float width_codes) {
     return 0.5 - (x * half_chord + atan(x, half_chord)) / kPi;
 }
 
+// Whether it is no edge but the end of a closed path, over which the texel goes on to be lit.
+bool is_path_end(Times times, uint number, int kind, Window window) {
+    if (!window.closed || number != (kind == kRise ? 0u : times.count - 1u)) return false;
+    return time_of(times, 0u, kRise) == 0.0 &&
+           time_of(times, times.count - 1u, kFall) == window.path_codes;
+}
+
 // The number of the edge of `others` that is the same as edge `edge` of `times`, or kNoEdge.
 uint same_edge(Times times, uint edge, Times others, int kind, Window window) {
     float own = time_of(times, edge, kind);
@@ -58,6 +66,7 @@ uint same_edge(Times times, uint edge, Times others, int kind, Window window) {
     for (uint i = 0u; i < others.count; ++i) {
         float ahead = time_of(others, i, kind) - own;
         if (ahead > least) break;
+        if (is_path_end(others, i, kind, window)) continue;
         // Of two that are equally near it is the earlier.
         if (abs(ahead) < least || (abs(ahead) == least && found == kNoEdge)) {
             least = abs(ahead);
@@ -68,8 +77,11 @@ uint same_edge(Times times, uint edge, Times others, int kind, Window window) {
     // Times are in order: an edge that is nearer to it than this one is the one before or after.
     float time = time_of(others, found, kind);
     float apart = abs(time - own);
-    if (edge > 0u && abs(time - time_of(times, edge - 1u, kind)) <= apart) return kNoEdge;
-    if (edge + 1u < times.count && abs(time - time_of(times, edge + 1u, kind)) < apart)
+    if (edge > 0u && !is_path_end(times, edge - 1u, kind, window) &&
+        abs(time - time_of(times, edge - 1u, kind)) <= apart)
+        return kNoEdge;
+    if (edge + 1u < times.count && !is_path_end(times, edge + 1u, kind, window) &&
+        abs(time - time_of(times, edge + 1u, kind)) < apart)
         return kNoEdge;
     return found;
 }
@@ -107,6 +119,8 @@ vec2 slope_of(Plane plane) {
 // The part of the window that comes after an edge of a texel, once that has been moved.
 float part_after_edge(Between between, uint texel, uint edge, int kind, Window window) {
     float own = time_of(between.times[texel], edge, kind);
+    if (is_path_end(between.times[texel], edge, kind, window))
+        return part_after(own - window.at_codes, window.width_codes);
     Plane plane = Plane(0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
     float weight = 0.0;
     float sum = 0.0;
@@ -126,9 +140,13 @@ float part_after_edge(Between between, uint texel, uint edge, int kind, Window w
                       window.width_codes * (kEven ? 1.0 : slowness));
 }
 
-float edges_visibility(Between between, Window window) {
-    // Edges farther from the window's middle do not come into it wherever they are moved to.
-    float reach = kMostApart * window.path_codes + 0.5 * kMostSlowness * window.width_codes;
+// Edges farther from the window's middle do not come into it wherever they are moved to.
+float reach_of(Window window) {
+    return kMostApart * window.path_codes + 0.5 * kMostSlowness * window.width_codes;
+}
+
+float part_seen(Between between, Window window) {
+    float reach = reach_of(window);
     float seen = 0.0;
     for (uint i = 0u; i < 4u; ++i) {
         if (!(between.weights[i] > 0.0)) continue;
@@ -142,6 +160,17 @@ float edges_visibility(Between between, Window window) {
             float after_fall = fall > reach ? 0.0 : part_after_edge(between, i, k, kFall, window);
             seen += between.weights[i] * (after_rise - after_fall);
         }
+    }
+    return seen;
+}
+
+float edges_visibility(Between between, Window window) {
+    float seen = part_seen(between, window);
+    // A window of a closed path is also one path before or after its place.
+    if (window.closed && min(window.at_codes, window.path_codes - window.at_codes) < reach_of(window)) {
+        window.at_codes +=
+            window.at_codes < 0.5 * window.path_codes ? window.path_codes : -window.path_codes;
+        seen += part_seen(between, window);
     }
     return clamp(seen, 0.0, 1.0);
 }

@@ -113,5 +113,32 @@ TEST(TexelEdges, ObliqueEdgesTakeLongerToCrossTheDisc) {
     EXPECT_NEAR(rising(-std::sqrt(3.0), 520.0), quarter, 2e-3);
 }
 
+// Lit over both ends of a path of 24 hours, but for what a wall darkens: there is no edge at the
+// ends, and edges near them are where they were.
+TEST(TexelEdges, GoOnOverTheEndsOfAClosedPath) {
+    const auto path = static_cast<std::uint16_t>(kPathCodes);
+    const std::vector<Span> lit = {{0, path}};
+    const std::vector<Span> dark_at_noon = {{0, 1500}, {1700, path}};
+    const std::vector<Span> dark_at_begin = {{8, path}};
+    const auto seen = [&](const std::vector<Span>& spans, double at) {
+        BetweenTexels between{
+            .texels = {0, 1, 2, 3},
+            .weights = {0.25, 0.25, 0.25, 0.25},
+            .places_texels = {glm::dvec2(-0.5), {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}},
+            .path_codes = kPathCodes};
+        return edges_visibility(page_of({spans, spans, spans, spans}), between,
+                                {.at_step = at,
+                                 .width_steps = 32.0,
+                                 .even = true,
+                                 .ends = {.path_steps = kPathCodes, .closed = true}});
+    };
+    for (const double at : {0.0, 5.0, kPathCodes - 5.0, kPathCodes}) {
+        EXPECT_DOUBLE_EQ(seen(lit, at), 1.0) << at;
+        EXPECT_DOUBLE_EQ(seen(dark_at_noon, at), 1.0) << at;
+    }
+    EXPECT_DOUBLE_EQ(seen(dark_at_begin, 0.0), 0.75);
+    EXPECT_DOUBLE_EQ(seen(dark_at_begin, kPathCodes), 0.75);
+}
+
 }  // namespace
 }  // namespace gnomon::bake

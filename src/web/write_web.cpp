@@ -66,6 +66,7 @@ std::uint64_t most_codes(const IntervalPage& page) {
 
 ordered_json json_of(const IntervalBake& bake, const std::string& title) {
     const BakePath& path = bake.path;
+    const PathEnds ends = path_ends(path);
     ordered_json directions = ordered_json::array();
     for (const DVec3& d : path.to_light_ws)
         directions.push_back({d.x, d.y, d.z});
@@ -87,6 +88,9 @@ ordered_json json_of(const IntervalBake& bake, const std::string& title) {
             {"utc_offset", path.utc_offset ? utc_offset_text(*path.utc_offset) : ""},
             {"begin_s", path.begin_s},
             {"end_s", path.end_s},
+            {"closed", ends.closed},
+            {"begins_up", ends.begins_up},
+            {"ends_up", ends.ends_up},
             {"bits", static_cast<int>(bake.bits)},
             {"codes_per_step", bake.codes_per_step()},
             {"width_steps", disc_width_steps(path, bake.codes_per_step())},

@@ -81,10 +81,14 @@ vec2 asks_at(LitTexel texel) {
 
 float seen_by(uint texel) {
     Times times = times_of(texels[texel]);
+    float at = push.at_codes;
     float seen = 0.0;
-    for (uint i = 0u; i < times.count; ++i) {
-        seen += part_after(time_of(times, i, kRise) - push.at_codes, push.width_codes) -
-                part_after(time_of(times, i, kFall) - push.at_codes, push.width_codes);
+    for (uint place = 0u; place <= push.closed; ++place) {
+        for (uint i = 0u; i < times.count; ++i) {
+            seen += part_after(time_of(times, i, kRise) - at, push.width_codes) -
+                    part_after(time_of(times, i, kFall) - at, push.width_codes);
+        }
+        at += at < 0.5 * push.path_codes ? push.path_codes : -push.path_codes;
     }
     return clamp(seen, 0.0, 1.0);
 }
@@ -157,7 +161,7 @@ float by_edges(PageFacet facet, PageChart chart, vec2 place) {
     between.weights = float[4]((1.0 - down) * (1.0 - upper), (1.0 - down) * upper,
                                down * (1.0 - lower), down * lower);
     return edges_visibility(between, Window(push.at_codes, push.width_codes, push.path_codes,
-                                            normal_from_slope(facet)));
+                                            push.closed != 0u, normal_from_slope(facet)));
 }
 
 float visibility_at(uvec2 pixel) {

@@ -202,6 +202,7 @@ private:
                 static_cast<float>(codes * static_cast<double>(sun.angular_diameter_rad) *
                                    baked_->through.steps_per_rad),
             .path_codes = static_cast<float>(baked_->path_codes),
+            .closed = baked_->through.ends.closed ? 1u : 0u,
             .fine_parts = static_cast<std::uint32_t>(baked_->fine_parts),
             .size = {receivers.size.width, receivers.size.height}};
         const DVec3 along = glm::cross(baked_->through.path.pole_ws, to_light);

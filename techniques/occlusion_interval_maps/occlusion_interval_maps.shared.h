@@ -53,6 +53,7 @@ struct LookupPush {
     float at_codes;  // of the light's middle, on the path
     float width_codes;
     float path_codes;
+    uint closed;  // PathEnds::closed
     uint fine_parts;
     uvec2 size;
 };

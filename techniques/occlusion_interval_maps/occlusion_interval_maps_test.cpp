@@ -79,7 +79,8 @@ public:
                        .width_steps =
                            static_cast<double>(sun.angular_diameter_rad) * through_.steps_per_rad,
                        .codes_per_step = codes_per_step(bits_),
-                       .even = setting_.weight == "even"}};
+                       .even = setting_.weight == "even",
+                       .ends = through_.ends}};
         light.along_ws = glm::normalize(glm::cross(through_.path.pole_ws, to_light));
         light.across_ws = glm::cross(to_light, light.along_ws);
         const bake::TexelFinder finder(texels_);
@@ -151,6 +152,30 @@ TEST_P(LookUp, IsThatInDouble) {
     between += expect_same(*technique, frame, in_double);
     EXPECT_GT(between, 1000u);
     EXPECT_EQ(in_double.fine_cells() > 1000, GetParam().lookup == "edges");
+}
+
+// A sun that does not set goes on from its last step to its first.
+TEST_P(LookUp, IsThatInDoubleOverTheEndsOfAClosedPath) {
+    Frame frame{.scene = make_builtin_scene("gas-station"), .size = kSize};
+    frame.camera = frame.scene.cameras().at(0);
+    DirectionalLight sun{.to_light_ws = normalize(Vec3(0.1f, 0.6f, -0.8f)),
+                         .angular_diameter_rad = radians(2.0f)};
+    const InDouble in_double(frame.scene, sun, GetParam());
+    ASSERT_TRUE(in_double.through().ends.closed);
+    const std::vector<DVec3>& directions = in_double.through().path.to_light_ws;
+    const std::unique_ptr<Technique> technique = make(GetParam());
+    std::size_t between = 0;
+    // Between them not due north, where rounding can decide how slow an edge along the path is.
+    for (const DVec3& to_light :
+         {directions.front(), directions.back(),
+          glm::normalize(0.6 * directions.front() + 0.4 * directions.back())}) {
+        sun.to_light_ws = Vec3(to_light);
+        frame.light = sun;
+        between += expect_same(*technique, frame, in_double);
+        const Image seen = technique->render(frame).image();
+        EXPECT_GT(std::ranges::count(seen.pixels(), 1.0f), 5000) << "wholly lit, as at noon";
+    }
+    EXPECT_GT(between, 300u);
 }
 
 const Setting kSettings[] = {{"nearest", "even", 8},       {"nearest", "disc", 16},

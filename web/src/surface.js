@@ -25,6 +25,10 @@ export const sharedUniforms = () => ({
   mode: { value: MODE.lit },
   at_codes: { value: 0 },
   width_codes: { value: 1 },
+  path_codes: { value: 1 },
+  closed: { value: false },
+  begins_up: { value: false },
+  ends_up: { value: false },
   most_codes: { value: 1 },
   to_sun_ws: { value: new THREE.Vector3(0, 1, 0) },
 });

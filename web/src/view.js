@@ -4,7 +4,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
-import { stepAt, toLightAt, codeSeconds } from "./bake_data.js";
+import { steps, stepAt, toLightAt, codeSeconds } from "./bake_data.js";
 import { MODE, pageTexture, sharedUniforms, surfaceMaterial, visibilityShader } from "./surface.js";
 
 const FIELD_DEG = 45; // of the picture's height
@@ -17,6 +17,8 @@ export class View {
     this.bake = bake;
     this.shared = sharedUniforms();
     this.shared.width_codes.value = bake.width_steps * bake.codes_per_step;
+    this.shared.path_codes.value = steps(bake) * bake.codes_per_step;
+    for (const name of ["closed", "begins_up", "ends_up"]) this.shared[name].value = bake[name];
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.checkLimits();
     this.pages = bake.pages.map((page, index) => ({

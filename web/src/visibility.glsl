@@ -6,6 +6,13 @@
 uniform highp usampler2DArray intervals;
 uniform float at_codes;     // the light's centre on its path
 uniform float width_codes;  // of its disc, > 0
+uniform float path_codes;
+// What is before the path's first step and after its last, as PathEnds has it.
+uniform bool closed;
+uniform bool begins_up;
+uniform bool ends_up;
+
+const vec4 kAlways = vec4(1e9);  // codes
 
 // The part of a disc of radius 1 that lies before x.
 vec4 disc_before(vec4 x) {
@@ -13,16 +20,23 @@ vec4 disc_before(vec4 x) {
     return 0.5 + (c * sqrt(1.0 - c * c) + asin(c)) / 3.14159265;
 }
 
+vec4 part_seen(vec4 rises, vec4 falls, float at) {
+    float radius = 0.5 * width_codes;
+    return disc_before((falls - at) / radius) - disc_before((rises - at) / radius);
+}
+
 // In [0, 1], as interval_visibility() has it.
 float visibility(ivec2 texel) {
+    float other_at = at_codes < 0.5 * path_codes ? at_codes + path_codes : at_codes - path_codes;
     float seen = 0.0;
     for (int pair = 0; pair < PAIRS; ++pair) {
         vec4 rises = vec4(texelFetch(intervals, ivec3(texel, 2 * pair), 0));
         vec4 falls = vec4(texelFetch(intervals, ivec3(texel, 2 * pair + 1), 0));
-        float radius = 0.5 * width_codes;
-        vec4 part = disc_before((falls - at_codes) / radius)
-                  - disc_before((rises - at_codes) / radius);
-        seen += dot(part, vec4(greaterThan(falls, rises)));
+        vec4 exists = vec4(greaterThan(falls, rises));
+        if (!closed && begins_up) rises = mix(rises, -kAlways, equal(rises, vec4(0.0)));
+        if (!closed && ends_up) falls = mix(falls, kAlways, equal(falls, vec4(path_codes)));
+        seen += dot(part_seen(rises, falls, at_codes), exists);
+        if (closed) seen += dot(part_seen(rises, falls, other_at), exists);
     }
     return min(seen, 1.0);
 }
