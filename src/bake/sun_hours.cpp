@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gnomon {
 
@@ -125,9 +126,17 @@ Camera camera_below(const Scene& scene, const SunGrid& grid) {
     return camera;
 }
 
+/// Whose materials all have two sides: the backs of others are not seen, and insides show backs.
+Scene with_backs(const Scene& scene) {
+    SceneData data = scene.data();
+    for (Material& material : data.materials)
+        material.double_sided = true;
+    return Scene(std::move(data));
+}
+
 void leave_out_insides(const Scene& scene, const SunGrid& grid, SunHoursResult& result,
                        Progress& progress) {
-    const trace::Tracer tracer(scene, result.options.ignore_alpha, progress);
+    const trace::Tracer tracer(with_backs(scene), result.options.ignore_alpha, progress);
     const auto seen = tracer.visible_surfaces(camera_below(scene, grid), grid.size, progress);
     for (unsigned row = 0; row < grid.size.height; ++row) {
         for (unsigned column = 0; column < grid.size.width; ++column) {

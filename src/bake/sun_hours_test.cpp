@@ -335,18 +335,25 @@ TEST(SunHours, PagesSayWhereThereIsNoSurface) {
 
 TEST(SunHours, GridLeavesOutInsides) {
     // [-1, 1]³: of the points of a plane through its middle and beside it.
-    const Scene scene =
+    const Scene other_sides =
         trace::make_scene({{trace::cube()}, {trace::quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6})}});
+    SceneData data = other_sides.data();
+    for (Material& material : data.materials)
+        material.double_sided = !material.double_sided;
+    const Scene scene(std::move(data));
+    ASSERT_NE(scene.materials()[0].double_sided, other_sides.materials()[0].double_sided);
     const SunGrid grid = make_sun_grid(scene, 0.5, 0.0);
     EXPECT_EQ(grid.size, (Extent{12, 12}));
-    Progress silent;
-    const SunHoursResult result = sun_hours(scene, grid, on_day(kEquinox, 30.0), silent);
-    for (std::size_t i = 0; i < result.points.size(); ++i) {
-        const DVec3 p = result.points[i].position_ws;
-        const bool inside = std::abs(p.x) < 1.0 && std::abs(p.z) < 1.0;
-        EXPECT_EQ(result.weights[i], inside ? 0.0 : 1.0) << p.x << ", " << p.z;
+    for (const Scene& sides : {scene, other_sides}) {
+        Progress silent;
+        const SunHoursResult result = sun_hours(sides, grid, on_day(kEquinox, 30.0), silent);
+        for (std::size_t i = 0; i < result.points.size(); ++i) {
+            const DVec3 p = result.points[i].position_ws;
+            const bool inside = std::abs(p.x) < 1.0 && std::abs(p.z) < 1.0;
+            EXPECT_EQ(result.weights[i], inside ? 0.0 : 1.0) << p.x << ", " << p.z;
+        }
+        EXPECT_EQ(summarize(result).front().points, 144u - 16u);
     }
-    EXPECT_EQ(summarize(result).front().points, 144u - 16u);
     EXPECT_EQ(make_sun_grid(scene, 0.5).height_ws_m, 0.0) << "1 m over the lowest point";
 }
 
