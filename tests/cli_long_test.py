@@ -50,7 +50,7 @@ class Sun(CliTest):
 
     def test_sensors(self):
         points = self.folder / "points.csv"
-        points.write_text("x,y,z,nx,ny,nz\n100,0,100,0,1,0\n100,0,100,0,-1,0\n100,0,100\n", encoding="utf-8")
+        points.write_text("100,0,100,0,1,0\n100,0,100,0,-1,0\n100,0,100\n", encoding="utf-8")
         self.sun(*self.DAY, "--sensors", points)
         hours = [float(row["hours"]) for row in self.rows()]
         self.assertEqual(hours[0], hours[2])

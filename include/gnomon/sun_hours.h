@@ -117,9 +117,10 @@ double choose_texel_size_m(const Scene& scene);
 SunGrid make_sun_grid(const Scene& scene, double spacing_m, std::optional<double> height_ws_m = {});
 
 /// Points from CSV: "x,y,z,nx,ny,nz", or "x,y,z" for those that face up (`up`), a line each, in the
-/// file's own frame; separated by commas, semicolons or tabs. A first line that begins with a
-/// letter is a heading, and lines that begin with # are comments. `name` is what errors call the
-/// text. Throws Error{input} naming the line.
+/// file's own frame; separated by commas, semicolons or tabs, with decimal points. A first line
+/// that has these names is a heading, and tells the order of the values. Blank lines and those that
+/// begin with # are skipped, and values may stand in quotes. `name` is what errors call the text.
+/// Throws Error{input} naming the line.
 std::vector<SunSensor> parse_sun_sensors(std::string_view text, std::string_view name,
                                          DVec3 up = {0.0, 1.0, 0.0});
 

@@ -357,28 +357,6 @@ TEST(SunHours, GridLeavesOutInsides) {
     EXPECT_EQ(make_sun_grid(scene, 0.5).height_ws_m, 0.0) << "1 m over the lowest point";
 }
 
-TEST(SunHours, SensorsFromCsv) {
-    const std::vector<SunSensor> sensors = parse_sun_sensors(
-        "x,y,z,nx,ny,nz\r\n# a comment\n1,2,3,0,0,2\n\n-1;+2.5;1e3\n", "points.csv", {0, 0, 1});
-    ASSERT_EQ(sensors.size(), 2u);
-    EXPECT_EQ(sensors[0].position_ws, DVec3(1, 2, 3));
-    EXPECT_EQ(sensors[0].normal_ws, DVec3(0, 0, 2));
-    EXPECT_EQ(sensors[1].position_ws, DVec3(-1, 2.5, 1000));
-    EXPECT_EQ(sensors[1].normal_ws, DVec3(0, 0, 1));
-}
-
-TEST(SunHours, CsvErrorsNameTheLine) {
-    const auto told = [](std::string_view text) {
-        return message_of([&] { parse_sun_sensors(text, "p.csv"); });
-    };
-    EXPECT_NE(told("1,2,3\n1,2\n").find("p.csv, line 2: has 2 values"), std::string::npos);
-    EXPECT_NE(told("x,y,z\n\n1,two,3\n").find("p.csv, line 3: \"two\""), std::string::npos);
-    EXPECT_NE(told("1,2,nan\n").find("line 1: \"nan\""), std::string::npos);
-    EXPECT_NE(told("1,2,3,0,0,0\n").find("line 1: the normal"), std::string::npos);
-    EXPECT_NE(told("1,2,3,\n").find("line 1: \"\""), std::string::npos);
-    EXPECT_NE(told("x,y,z\n").find("has no points"), std::string::npos);
-}
-
 TEST(SunHours, OptionsOutOfRangeAreErrors) {
     const auto told = [](const auto& change) {
         SunHoursOptions options = on_day(kEquinox);

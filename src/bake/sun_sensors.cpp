@@ -1,98 +1,17 @@
 #include <gnomon/sun_hours.h>
 
 #include "base/check.h"
-#include "base/file.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 
 namespace gnomon {
 
 namespace {
 
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30;
-constexpr std::size_t kNumbers = 6, kNumbersFacingUp = 3;
 constexpr double kMaxGridPoints = 1e7;
 
-std::string_view trimmed(std::string_view text) {
-    const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
-    while (!text.empty() && is_space(text.front()))
-        text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back()))
-        text.remove_suffix(1);
-    return text;
-}
-
-/// A line and where it is, for errors.
-struct Line {
-    std::string_view name, text;
-    std::size_t number;
-};
-
-double number_of(const Line& line, std::string_view word) {
-    std::string_view digits = trimmed(word);
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    double value = 0.0;
-    const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, value);
-    if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-        fail_input("{}, line {}: \"{}\" is no finite number", line.name, line.number,
-                   trimmed(word));
-    }
-    return value;
-}
-
-SunSensor sensor_of(const Line& line, DVec3 up) {
-    std::array<double, kNumbers> numbers{};
-    std::size_t count = 0;
-    std::string_view rest = line.text;
-    for (bool more = true; more; ++count) {
-        const std::size_t end = std::min(rest.find_first_of(",;\t"), rest.size());
-        if (count < kNumbers) numbers[count] = number_of(line, rest.substr(0, end));
-        more = end < rest.size();
-        rest.remove_prefix(more ? end + 1 : end);
-    }
-    if (count != kNumbers && count != kNumbersFacingUp) {
-        fail_input("{}, line {}: has {} values; it must be x,y,z,nx,ny,nz, or x,y,z to face up",
-                   line.name, line.number, count);
-    }
-    const DVec3 position(numbers[0], numbers[1], numbers[2]);
-    if (count == kNumbersFacingUp) return {position, up};
-    const DVec3 normal(numbers[3], numbers[4], numbers[5]);
-    if (!(glm::length(normal) > 0.0)) {
-        fail_input("{}, line {}: the normal 0,0,0 faces nowhere", line.name, line.number);
-    }
-    return {position, normal};
-}
-
 }  // namespace
-
-std::vector<SunSensor> parse_sun_sensors(std::string_view text, std::string_view name, DVec3 up) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-    std::vector<SunSensor> sensors;
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const Line line{name, trimmed(text.substr(0, end)), number};
-        text.remove_prefix(std::min(end + 1, text.size()));
-        const bool heading = number == 1 && !line.text.empty() &&
-                             (std::isalpha(static_cast<unsigned char>(line.text.front())) != 0 ||
-                              line.text.front() == '"');
-        if (line.text.empty() || line.text.starts_with('#') || heading) continue;
-        sensors.push_back(sensor_of(line, up));
-    }
-    if (sensors.empty()) fail_input("{}: has no points; a line is x,y,z,nx,ny,nz", name);
-    return sensors;
-}
-
-std::vector<SunSensor> read_sun_sensors(const std::filesystem::path& path, DVec3 up) {
-    const std::vector<std::uint8_t> bytes = read_file(path, kMaxFileBytes);
-    return parse_sun_sensors({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                             path.string(), up);
-}
 
 std::vector<SunSensor> SunGrid::sensors() const {
     std::vector<SunSensor> sensors;
