@@ -123,6 +123,27 @@ class Sun(CliTest):
         self.sun(*self.DAY, "--texel", 0.5)
         self.assertEqual((self.folder / "hours" / "plan.txt").read_text(encoding="utf-8"), "mine")
 
+    def test_full_disk_leaves_what_was_there(self):
+        # A limit on the size of files fails as a full disk does: hours.csv and hours.exr fit, top.png does not.
+        limit = 4096
+
+        def limited():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        flags = ("sun", "cube", "-o", self.folder / "hours", *self.DAY, "--grid", 4, "--minutes", 60)
+        self.assert_fails(MACHINE, ["top.png"], *flags, preexec_fn=limited)
+        self.assertEqual(self.files(), [])
+        (self.folder / "hours").mkdir()
+        (self.folder / "hours" / "hours.csv").write_text("earlier", encoding="utf-8")
+        self.assert_fails(MACHINE, ["top.png"], *flags, preexec_fn=limited)
+        self.assertEqual(self.files(), ["hours", "hours/hours.csv"])
+        # Nor does it do half of its work where a file cannot be replaced.
+        (self.folder / "hours" / "view.png" / "mine").mkdir(parents=True)
+        self.assert_fails(MACHINE, ["view.png"], *flags)
+        self.assertEqual(self.files(), ["hours", "hours/hours.csv", "hours/view.png", "hours/view.png/mine"])
+        self.assertEqual((self.folder / "hours" / "hours.csv").read_text(encoding="utf-8"), "earlier")
+
     def test_pages_of_an_earlier_run_go(self):
         (self.folder / "hours").mkdir()
         mine = ["hours.old.exr", "hours.1.png", "north_hours.exr"]

@@ -188,16 +188,19 @@ void run_sun(const SunFlags& flags, const Session& session, ConsoleProgress& pro
         text += fmt::format("clocks at UTC{}, the sun's own nearest hour (--utc-offset)\n",
                             utc_offset_text(options.utc_offset));
     }
-    std::string files;
+    StagedFiles files(flags.output);
     for (const Job& job : jobs) {
         text += job.note + table(job.result, flags.at_least_h) + "\n";
-        for (const auto& path : write_sun_hours(flags.output, job.prefix, scene, job.result, frame,
-                                                camera, flags.view.size, progress)) {
-            files += path.string() + "\n";
-        }
+        add_sun_hours(files, job.prefix, scene, job.result, frame, camera, flags.view.size,
+                      progress);
     }
+    const std::vector<std::filesystem::path> written = files.put_in_place();
+    for (const Job& job : jobs)
+        remove_other_pages(flags.output, job.prefix, written);
+    for (const std::filesystem::path& path : written)
+        text += path.string() + "\n";
     progress.clear();
-    print(text + files);
+    print(text);
 }
 
 void add_days(CLI::App& app, SunFlags& flags) {

@@ -28,22 +28,6 @@ bool is_page(std::string_view name) {
            std::ranges::all_of(name.substr(1), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Removes the pages that an earlier run with other texels has left.
-void remove_other_pages(const fs::path& folder, const std::string& prefix,
-                        const std::vector<fs::path>& written) {
-    std::error_code error;
-    std::vector<fs::path> others;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-        const std::string name = entry.path().filename().string();
-        if (name.starts_with(prefix) && is_page(std::string_view(name).substr(prefix.size())) &&
-            std::ranges::find(written, folder / name) == written.end()) {
-            others.push_back(entry.path());
-        }
-    }
-    for (const fs::path& other : others)
-        fs::remove(other, error);
-}
-
 }  // namespace
 
 std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) {
@@ -73,31 +57,37 @@ std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) 
     return text;
 }
 
-std::vector<std::filesystem::path> write_sun_hours(const std::filesystem::path& folder,
-                                                   const std::string& prefix, const Scene& scene,
-                                                   const SunHoursResult& result,
-                                                   const FileFrame& frame, const Camera& camera,
-                                                   Extent size, Progress& progress) {
+void add_sun_hours(StagedFiles& files, const std::string& prefix, const Scene& scene,
+                   const SunHoursResult& result, const FileFrame& frame, const Camera& camera,
+                   Extent size, Progress& progress) {
     const Image top = sun_hours_picture(scene, result, top_camera(scene, size), size, progress);
     const Image view = sun_hours_picture(scene, result, camera, size, progress);
     const std::vector<Image> pages = sun_hours_pages(result);
     const std::string csv = sun_hours_csv(result, frame);
     if (progress.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
 
-    make_folder(folder);
-    std::vector<std::filesystem::path> paths;
-    const auto path = [&](const std::string& name) {
-        return paths.emplace_back(folder / (prefix + name));
-    };
-    write_text(path("hours.csv"), csv);
+    write_text(files.add(prefix + "hours.csv"), csv);
     for (std::size_t page = 0; page < pages.size(); ++page) {
         const std::string number = pages.size() > 1 ? fmt::format(".{}", page) : std::string();
-        write_exr(path(fmt::format("hours{}.exr", number)), pages[page]);
+        write_exr(files.add(fmt::format("{}hours{}.exr", prefix, number)), pages[page]);
     }
-    write_png(path("top.png"), top);
-    write_png(path("view.png"), view);
-    remove_other_pages(folder, prefix, paths);
-    return paths;
+    write_png(files.add(prefix + "top.png"), top);
+    write_png(files.add(prefix + "view.png"), view);
+}
+
+void remove_other_pages(const fs::path& folder, const std::string& prefix,
+                        const std::vector<fs::path>& written) {
+    std::error_code error;
+    std::vector<fs::path> others;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(prefix) && is_page(std::string_view(name).substr(prefix.size())) &&
+            std::ranges::find(written, folder / name) == written.end()) {
+            others.push_back(entry.path());
+        }
+    }
+    for (const fs::path& other : others)
+        fs::remove(other, error);
 }
 
 }  // namespace gnomon::cli

@@ -2,6 +2,7 @@
 
 #include <gnomon/sun_hours.h>
 
+#include "staged_files.h"
 #include "view.h"
 
 #include <filesystem>
@@ -14,12 +15,13 @@ namespace gnomon::cli {
 /// A line for each point: where it is and faces, in the file's coordinates, and its hours.
 std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame);
 
-/// Writes all files into `folder`, each whole or not at all; their names begin with `prefix`.
-/// Returns the paths. Everything that takes time is done before the first file is written.
-std::vector<std::filesystem::path> write_sun_hours(const std::filesystem::path& folder,
-                                                   const std::string& prefix, const Scene& scene,
-                                                   const SunHoursResult& result,
-                                                   const FileFrame& frame, const Camera& camera,
-                                                   Extent size, Progress& progress);
+/// Adds files, whose names begin with `prefix`.
+void add_sun_hours(StagedFiles& files, const std::string& prefix, const Scene& scene,
+                   const SunHoursResult& result, const FileFrame& frame, const Camera& camera,
+                   Extent size, Progress& progress);
+
+/// Removes the pages that an earlier run with other texels has left; `written`: those of this one.
+void remove_other_pages(const std::filesystem::path& folder, const std::string& prefix,
+                        const std::vector<std::filesystem::path>& written);
 
 }  // namespace gnomon::cli
