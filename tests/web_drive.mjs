@@ -77,6 +77,9 @@ const judge = async () => {
   seen.title = await page.title();
   seen.zone = await page.locator("#zone").innerText();
   seen.heading = await page.locator("header").innerText();
+  seen.ticks = await page.evaluate(() =>
+    [...document.getElementById("legend-ticks").children].map(({ textContent, style }) => [textContent, style.left]),
+  );
 
   seen.times_s = [];
   for (const [name, part] of [["morning", 0.3], ["later", 0.36]]) {

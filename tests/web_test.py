@@ -323,9 +323,9 @@ class Page16(Page):
 
 
 class PolarDay(unittest.TestCase):
-    """24 hours of sun, whose end is its begin."""
+    """24 hours of sun, whose end is its begin, and where no point has more than 11 of them."""
 
-    def test_is_lit_at_its_ends(self):
+    def test_lit_ends_and_even_ticks(self):
         require_browser()
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
@@ -333,7 +333,13 @@ class PolarDay(unittest.TestCase):
             gnomon("web", folder / "bake", "-o", folder / "page")
             bake = Bake(folder / "bake")
             bake.closed = True
+            facts = json.loads((folder / "page/web.json").read_text(encoding="utf-8"))
+            facts["most_sun_s"] = 10.2 * 3600
+            (folder / "page/web.json").write_text(json.dumps(facts), encoding="utf-8")
             seen = visit(folder / "page", folder)
+        self.assertEqual([text for text, _ in seen["ticks"]], ["0", "3", "6", "9 h"])
+        for text, left in seen["ticks"]:
+            self.assertAlmostEqual(float(left.rstrip("%")), 100 * int(text.split()[0]) / 11, places=2)
         ends = [image for image in seen["visibility"]
                 if image["time_s"] in (bake.path["begin_s"], bake.path["end_s"]) and not image["shift"]]
         self.assertEqual(len(ends), 2 * len(bake.pages))

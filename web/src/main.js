@@ -16,7 +16,8 @@ const TURN_RAD = Math.PI / 36; // of the camera, by a key: 5 degrees
 const NEARER = 0.9; // of its distance
 const EXACT_S = 2; // bakes whose times are as fine tell seconds
 const CLICK_PX = 5; // a pointer that moves farther turns the camera
-const TICKS = 4; // parts of the legend at most
+const TICKS = 5; // parts of the legend at most
+const TICKS_EVERY_H = [1, 2, 3, 4, 6];
 
 const by = (id) => document.getElementById(id);
 
@@ -54,10 +55,11 @@ class Page {
     Object.assign(by("time"), { min: bake.begin_s, max: bake.end_s, step });
     by("legend-scale").style.background = falseColorGradient();
     const hours = this.most_s / HOUR_S;
-    const parts = [4, 3, 2, 5].find((n) => n <= TICKS + 1 && hours % n === 0) ?? 1;
-    for (let i = 0; i <= parts; ++i) {
+    const every = TICKS_EVERY_H.find((n) => hours / n <= TICKS) ?? Math.ceil(hours / TICKS);
+    for (let hour = 0; hour <= hours; hour += every) {
       const tick = document.createElement("span");
-      tick.textContent = `${(hours * i) / parts}${i === parts ? " h" : ""}`;
+      tick.textContent = `${hour}${hour + every > hours ? " h" : ""}`;
+      tick.style.left = `${(100 * hour) / hours}%`;
       by("legend-ticks").append(tick);
     }
   }
