@@ -4,7 +4,7 @@
 
 // Where on its page each receiver is, and how much of the light the texels there see: what
 // bake::TexelFinder computes in double. Listing 13-1 of the chapter takes four intervals at a time,
-// one a channel of two textures; here each texel has a list, as long as it needs.
+// one a channel of two textures; here each texel has a list of up to 64.
 
 #include "occlusion_interval_maps.shared.h"
 #include "raster/scene.shared.h"
