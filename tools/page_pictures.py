@@ -85,6 +85,11 @@ PICTURES = {
         f"field-small --light sun:{light}{technique}"
         for light in ("elevation=85,azimuth=0", "elevation=30,azimuth=180", "elevation=30,azimuth=90", "elevation=30,azimuth=0")
         for technique in ("", f" {MAP}", " --technique psm", " --technique psm --psm.map cube")]),
+    "psm-choices": ("1280x720", (470, 300, 710, 440), 4, [
+        f"field-small --light sun:{light} --technique psm{choice}"
+        for light in ("elevation=85,azimuth=0", "elevation=30,azimuth=180", "elevation=30,azimuth=90", "elevation=30,azimuth=0")
+        for choice in ("", " --psm.unit_cube_clipping false", " --psm.virtual_camera slide_back",
+                       " --psm.virtual_camera none")]),
     "psm-near": ("1280x720", (0, 380, 480, 620), 2, [
         f"courtyard --technique psm --psm.virtual_camera {camera}" for camera in ("none", "near_quad")]),
     "pssm": ("1280x720", (440, 300, 760, 460), 3, [
