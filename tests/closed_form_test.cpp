@@ -160,12 +160,11 @@ INSTANTIATE_TEST_SUITE_P(Techniques, ClosedFormApart, testing::ValuesIn(test::su
 /// Of second depths: one that leaks where the cube stands on the ground.
 std::size_t crease_pixels(const std::string& label) {
     if (label == "pssm_faces_unlit" || label == "shadow_map_faces_unlit" ||
-        label == "pssm_filter_nearest" || label == "lispsm_filter_dithered_4" ||
-        label == "psm_filter_dithered_4" || label == "object_id" ||
-        label == "object_id_compare_ids_and_depths") {
+        label == "pssm_filter_nearest" || label == "psm_filter_dithered_4" ||
+        label == "object_id" || label == "object_id_compare_ids_and_depths") {
         return 1;
     }
-    if (label == "pssm_filter_dithered_4") return 3;
+    if (label == "pssm_filter_dithered_4" || label == "lispsm_filter_dithered_4") return 3;
     return label == "tsm_filter_dithered_4" ? 2 : 0;
 }
 
