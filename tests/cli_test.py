@@ -13,7 +13,6 @@ import unittest
 from cli_case import CLI, DONE, INPUT, MACHINE, SMALL, TIMEOUT_S, CliTest, gnomon
 
 COMMANDS = ("info", "scene", "render", "compare", "bench", "bake", "sun", "web")
-NOBODY = 65534
 
 
 class Help(CliTest):
@@ -170,13 +169,7 @@ class Input(CliTest):
         secret.write_bytes(b"glTF")
         secret.chmod(0)
         self.folder.chmod(0o755)
-        options = {}
-        if os.geteuid() == 0:  # root may read everything
-            options["user"] = NOBODY
-            try:
-                gnomon("--version", **options)
-            except PermissionError:
-                self.skipTest("runs as root, and nobody else may run the program")
+        options = self.unprivileged()
         self.fails(["secret.glb"], secret, **options)
 
 
@@ -217,13 +210,7 @@ class Output(CliTest):
         self.folder.chmod(0o755)
         closed = self.folder / "closed"
         closed.mkdir(mode=0o555)
-        options = {}
-        if os.geteuid() == 0:  # root may write everywhere
-            options["user"] = NOBODY
-            try:
-                gnomon("--version", **options)
-            except PermissionError:
-                self.skipTest("runs as root, and nobody else may run the program")
+        options = self.unprivileged()
         self.fails_everywhere(["closed cannot be written to"], closed / "x", **options)
 
     def test_output_is_a_folder(self):

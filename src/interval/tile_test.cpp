@@ -241,15 +241,25 @@ TEST(TileTracer, ReceiversOnTheCastersThemselves) {
     }
 }
 
-TEST(TileTracer, HolesLetLightThrough) {
-    Texture fence;  // opaque columns, two texels apart
-    fence.size = {4, 1};
-    fence.rgba = {0, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0};
+/// Opaque columns, two texels apart.
+Texture fence() {
+    Texture texture;
+    texture.size = {4, 1};
+    texture.rgba = {0, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0};
+    return texture;
+}
+
+/// Of the first texture's holes.
+Material with_holes() {
     Material material;
     material.base_color_texture = 0;
     material.alpha_cutoff = 0.5f;
-    const Scene scene =
-        trace::make_scene({{trace::quad({-3, 0, -1}, {6, 0, 0}, {0, 3, 0})}}, material, {fence});
+    return material;
+}
+
+TEST(TileTracer, HolesLetLightThrough) {
+    const Scene scene = trace::make_scene({{trace::quad({-3, 0, -1}, {6, 0, 0}, {0, 3, 0})}},
+                                          with_holes(), {fence()});
     Case c = ordinary_day(scene, receivers_on({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 8));
     expect_exact(c, "masked");
     const Masks masked = by_tiles(c, 64);
@@ -259,18 +269,12 @@ TEST(TileTracer, HolesLetLightThrough) {
 }
 
 TEST(TileTracer, SmallHolesSeenAtFewSteps) {
-    Texture fence;  // opaque columns, two texels apart
-    fence.size = {4, 1};
-    fence.rgba = {0, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0};
-    Material material;
-    material.base_color_texture = 0;
-    material.alpha_cutoff = 0.5f;
     Random random(21);
     std::vector<Mat4> places;
     for (int i = 0; i < 300; ++i)
         places.push_back(trace::moved(Vec3(0, 5, 0) + random.in_box(3.0f)));
     const Scene scene = trace::make_scene(
-        {{trace::quad({0, 0, 0}, {0.6f, 0, 0}, {0, 0.2f, 0.4f}), places}}, material, {fence});
+        {{trace::quad({0, 0, 0}, {0.6f, 0, 0}, {0, 0.2f, 0.4f}), places}}, with_holes(), {fence()});
     Case c = ordinary_day(scene, receivers_on({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 8), 40);
     expect_exact(c, "masked");
     const Masks masked = by_tiles(c, 1);
