@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Techniques, ClosedFormApart, testing::ValuesIn(test::su
 std::size_t crease_pixels(const std::string& label) {
     if (label == "pssm_faces_unlit" || label == "shadow_map_faces_unlit" ||
         label == "pssm_filter_nearest" || label == "psm_filter_dithered_4" ||
-        label == "object_id" || label == "object_id_compare_ids_and_depths") {
+        label == "object_id") {
         return 1;
     }
     if (label == "pssm_filter_dithered_4" || label == "lispsm_filter_dithered_4") return 3;

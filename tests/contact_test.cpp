@@ -28,7 +28,7 @@ double widest_gap_texels(const Subject& subject, std::size_t& judged) {
     const TechniqueInfo& info = find_technique(subject.technique);
     if (std::ranges::count(info.params(), "map_size", &ParamInfo::name) != 0)
         params.set("map_size", 192);
-    const auto technique = make_technique(context(), subject.technique, params);
+    const auto technique = test::make_small(subject.technique, params);
     double widest = 0.0;
     for (const double azimuth_deg : {30.0, 120.0, 210.0, 300.0}) {
         const double azimuth = azimuth_deg * kPiD / 180.0;
@@ -104,7 +104,7 @@ float most_lit_under_eaves(const Subject& subject, std::size_t& judged) {
     const TechniqueInfo& info = find_technique(subject.technique);
     if (std::ranges::count(info.params(), "map_size", &ParamInfo::name) != 0)
         params.set("map_size", 192);
-    const auto technique = make_technique(context(), subject.technique, params);
+    const auto technique = test::make_small(subject.technique, params);
     const Scene scene = test::make_scene(
         {test::quad({-kHalf_m, -kTop_m, 0}, {2 * kHalf_m, 0, 0}, {0, 2 * kTop_m, 0}),
          test::box({-kHalf_m, kTop_m, -kDeep_m}, {kHalf_m, kTop_m + kThick_m, kEaves_m})});

@@ -114,7 +114,7 @@ protected:
     std::string name() const { return std::string(info().name); }
 
     std::unique_ptr<Technique> make(const Params& params = {}) const {
-        return make_technique(context(), info().name, params);
+        return test::make_small(info().name, params);
     }
 
     /// Those of `lights` that the technique says it can shadow.

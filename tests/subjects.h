@@ -26,7 +26,8 @@ inline std::ostream& operator<<(std::ostream& out, const Subject& subject) {
     return out << subject.label;
 }
 
-/// Every technique that casts shadows, once for each choice of its choices.
+/// Every technique that casts shadows, at its defaults and once for each other choice of its
+/// choices.
 inline std::vector<Subject> casting_subjects() {
     std::vector<Subject> subjects;
     for (const TechniqueInfo& info : techniques()) {
@@ -35,6 +36,7 @@ inline std::vector<Subject> casting_subjects() {
         subjects.push_back({name, name, {}});
         for (const ParamInfo& param : info.params()) {
             for (const std::string& word : param.choices) {
+                if (word == to_string(param.default_value)) continue;
                 subjects.push_back(
                     {name + "_" + param.name + "_" + word, name, {{param.name, word}}});
             }
