@@ -9,20 +9,6 @@ namespace gnomon::cli {
 
 namespace {
 
-std::vector<std::string_view> light_kind_names(LightKinds kinds) {
-    constexpr std::pair<LightKinds, std::string_view> kNames[] = {
-        {LightKinds::directional, "directional"},
-        {LightKinds::point, "point"},
-        {LightKinds::spot, "spot"},
-        {LightKinds::area, "area"}};
-    std::vector<std::string_view> names;
-    for (const auto& [kind, name] : kNames) {
-        const bool has = (static_cast<unsigned>(kinds) & static_cast<unsigned>(kind)) != 0;
-        if (has) names.push_back(name);
-    }
-    return names;
-}
-
 std::string_view penumbra_name(Penumbra penumbra) {
     switch (penumbra) {
         case Penumbra::none:
@@ -78,7 +64,7 @@ std::string device_text(const DeviceInfo& device) {
 std::string technique_text(const TechniqueInfo& info) {
     std::string text =
         fmt::format("  {}  {}\n     lights: {}; penumbra: {}; alpha masks: {}\n", info.name,
-                    info.title, fmt::join(light_kind_names(info.lights), ", "),
+                    info.title, fmt::join(light_kinds(info.lights), ", "),
                     penumbra_name(info.penumbra), info.honors_alpha ? "honoured" : "solid");
     for (const ParamInfo& param : info.params()) {
         text += fmt::format("     --{}.{} {}\n         {}; {}\n", info.name, param.name,
@@ -112,7 +98,7 @@ Json technique_json(const TechniqueInfo& info) {
     return {{"name", info.name},
             {"title", info.title},
             {"source", info.source},
-            {"lights", light_kind_names(info.lights)},
+            {"lights", light_kinds(info.lights)},
             {"penumbra", penumbra_name(info.penumbra)},
             {"honors_alpha", info.honors_alpha},
             {"self_shadows", info.self_shadows},

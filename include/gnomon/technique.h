@@ -96,13 +96,17 @@ enum class LightKinds : unsigned {
     directional = 1,
     point = 2,
     spot = 4,
-    area = 8,  ///< sphere, disc, rectangle
-    all = 15,
+    sphere = 8,
+    disc = 16,
+    rect = 32,
+    all = 63,
 };
 constexpr LightKinds operator|(LightKinds a, LightKinds b) {
     return static_cast<LightKinds>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
 bool supports(LightKinds kinds, const Light& light);
+/// In the words of light_kind().
+std::vector<std::string_view> light_kinds(LightKinds kinds);
 
 enum class Penumbra { none, fixed_width, physical };
 

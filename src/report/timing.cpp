@@ -3,9 +3,9 @@
 #include "base/parallel.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 
 namespace gnomon::report {
@@ -134,18 +134,10 @@ std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info, cons
 
 std::string unsupported_note(const TechniqueInfo& info, const Light& light) {
     if (supports(info.lights, light)) return {};
-    constexpr std::array<std::pair<LightKinds, std::string_view>, 4> kKinds = {
-        {{LightKinds::directional, "directional"},
-         {LightKinds::point, "point"},
-         {LightKinds::spot, "spot"},
-         {LightKinds::area, "area"}}};
-    std::string able;
-    for (const auto& [kind, name] : kKinds) {
-        if ((static_cast<unsigned>(info.lights) & static_cast<unsigned>(kind)) == 0) continue;
-        able += fmt::format("{}{}", able.empty() ? "" : ", ", name);
-    }
     return fmt::format("no shadows of {} lights (it shadows: {})", light_kind(light),
-                       able.empty() ? "none" : able);
+                       info.lights == LightKinds::none
+                           ? "none"
+                           : fmt::to_string(fmt::join(light_kinds(info.lights), ", ")));
 }
 
 }  // namespace gnomon::report

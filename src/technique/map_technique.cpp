@@ -1,7 +1,5 @@
 #include "technique/map_technique.h"
 
-#include "base/check.h"
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -30,11 +28,6 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
       options_(options),
       maps_(std::make_unique<Maps>(context.impl().device(), options)),
       lookup_(context.impl().device(), options, bias(options)) {
-    if (options.filter == MapFilter::pcss && options.content != MapContent::depth &&
-        !is_blurred(options.content)) {
-        fail_input("{}: filter pcss reads depths; set content to depth, or choose another filter",
-                   info.name);
-    }
     if (options.fit_to == FitTo::picture)
         survey_ = std::make_unique<ReceiverSurvey>(context.impl().device());
 }

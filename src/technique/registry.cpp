@@ -3,14 +3,34 @@
 #include "base/check.h"
 #include "base/text.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace gnomon {
 
+namespace {
+
+constexpr std::pair<LightKinds, std::string_view> kKinds[] = {
+    {LightKinds::directional, "directional"},
+    {LightKinds::point, "point"},
+    {LightKinds::spot, "spot"},
+    {LightKinds::sphere, "sphere"},
+    {LightKinds::disc, "disc"},
+    {LightKinds::rect, "rect"}};
+
+}  // namespace
+
+std::vector<std::string_view> light_kinds(LightKinds kinds) {
+    std::vector<std::string_view> names;
+    for (const auto& [kind, name] : kKinds) {
+        if ((static_cast<unsigned>(kinds) & static_cast<unsigned>(kind)) != 0)
+            names.push_back(name);
+    }
+    return names;
+}
+
 bool supports(LightKinds kinds, const Light& light) {
-    LightKinds kind = LightKinds::area;
-    if (std::holds_alternative<DirectionalLight>(light)) kind = LightKinds::directional;
-    if (std::holds_alternative<PointLight>(light)) kind = LightKinds::point;
-    if (std::holds_alternative<SpotLight>(light)) kind = LightKinds::spot;
-    return (static_cast<unsigned>(kinds) & static_cast<unsigned>(kind)) != 0;
+    return std::ranges::count(light_kinds(kinds), light_kind(light)) != 0;
 }
 
 const TechniqueInfo& find_technique(std::string_view name) {

@@ -14,14 +14,15 @@ TEST(Supports, TellsTheKindsOfLightApart) {
         {DirectionalLight{}, LightKinds::directional},
         {PointLight{}, LightKinds::point},
         {SpotLight{}, LightKinds::spot},
-        {SphereLight{}, LightKinds::area},
-        {DiscLight{}, LightKinds::area},
-        {RectLight{}, LightKinds::area}};
+        {SphereLight{}, LightKinds::sphere},
+        {DiscLight{}, LightKinds::disc},
+        {RectLight{}, LightKinds::rect}};
     for (const auto& [light, kind] : lights) {
-        for (const LightKinds kinds :
-             {LightKinds::directional, LightKinds::point, LightKinds::spot, LightKinds::area}) {
+        for (const LightKinds kinds : {LightKinds::directional, LightKinds::point, LightKinds::spot,
+                                       LightKinds::sphere, LightKinds::disc, LightKinds::rect}) {
             EXPECT_EQ(supports(kinds, light), kinds == kind) << light_kind(light);
         }
+        EXPECT_EQ(light_kinds(kind), std::vector{light_kind(light)});
         EXPECT_TRUE(supports(LightKinds::all, light)) << light_kind(light);
         EXPECT_FALSE(supports(LightKinds::none, light)) << light_kind(light);
     }

@@ -31,6 +31,8 @@ constexpr float kRaised = 1.0f / 3.0f;
 /// The light without extent, where it has a middle that stands for it.
 std::optional<Light> middle_of(const Light& light) {
     if (!has_extent(light)) return light;
+    if (const auto* sphere = std::get_if<SphereLight>(&light))
+        return PointLight{.position_ws = sphere->center_ws};
     const auto* sun = std::get_if<DirectionalLight>(&light);
     if (sun == nullptr) return std::nullopt;
     DirectionalLight middle = *sun;

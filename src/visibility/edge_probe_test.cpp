@@ -110,11 +110,13 @@ TEST(EdgeProbe, FindsShadowBesideAPlaneThatTheLightGrazes) {
     EXPECT_TRUE(below_beam.finds_shadow(0.45));
 }
 
-TEST(EdgeProbe, KnowsNoMiddleOfAreas) {
+TEST(EdgeProbe, KnowsTheMiddleOfASphereButNotOfFlatLights) {
     Progress silent;
     const auto tracer =
         std::make_shared<const trace::Tracer>(Scene(raster::scene_data({ground()})), false, silent);
-    EXPECT_EQ(make_edge_probe(tracer, {}, SphereLight{}), nullptr);
+    EXPECT_NE(make_edge_probe(tracer, {}, SphereLight{}), nullptr);
+    EXPECT_EQ(make_edge_probe(tracer, {}, DiscLight{}), nullptr);
+    EXPECT_EQ(make_edge_probe(tracer, {}, RectLight{}), nullptr);
     EXPECT_NE(make_edge_probe(tracer, {}, DirectionalLight{.angular_diameter_rad = 0.01f}),
               nullptr);
 }

@@ -1,5 +1,6 @@
 #include "visibility/light_shape.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace gnomon {
@@ -41,6 +42,11 @@ struct ToShape {
 
 shared::LightShape light_shape(const Light& light) {
     return std::visit(ToShape{}, light);
+}
+
+DVec3 center_ws(const Light& light) {
+    assert(!std::holds_alternative<DirectionalLight>(light));
+    return DVec3(light_shape(light).position);
 }
 
 shared::ReceiverPush receiver_push(const raster::Receivers& receivers, const Light& light) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gnomon/light.h>
+#include <gnomon/math.h>
 
 #include "raster/receivers.h"
 #include "visibility/light_shape.shared.h"
@@ -9,6 +10,9 @@ namespace gnomon {
 
 /// The light as shaders see it.
 shared::LightShape light_shape(const Light& light);
+
+/// Where a light within the world is, or its middle.
+DVec3 center_ws(const Light& light);
 
 /// For visibility/receiver.glsl.
 shared::ReceiverPush receiver_push(const raster::Receivers& receivers, const Light& light);

@@ -240,18 +240,24 @@ float lit_footprint(sampler2DArray map, float size, MapBias bias, MapPoint point
 
 // The mean depth of what hides the receiver within an ellipse of the map; 0 where nothing does. R. Fernando,
 // "Percentage-Closer Soft Shadows", SIGGRAPH 2005 sketches.
-float blocker_depth(sampler2DArray map, float size, MapPoint point, mat2 spread, float turn,
-                    uint taps) {
+float blocker_depth(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread,
+                    float turn, uint taps) {
     float sum = 0.0;
     float blockers = 0.0;
     for (uint i = 0u; i < taps; ++i) {
         vec2 at = point.texel + spread * disc_sample(i, turn);
         vec2 texel = clamp(floor(at), 0.0, size - 1.0);
         vec2 d = texel + 0.5 - point.texel;
-        float depth = texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x;
-        float hides = depth > plane_depths(point, vec4(d.x), vec4(d.y)).x ? 1.0 : 0.0;
-        sum += hides * depth;
-        blockers += hides;
+        float plane = plane_depths(point, vec4(d.x), vec4(d.y)).x;
+        float stored = stored_distance(map, size, texel, point.layer);
+        float depth = stored;
+        bool hides = stored > plane;
+        if (kContent != kContentDepth) {
+            depth = depth_of(point.space, (texel + 0.5) / size, stored);
+            hides = compared_distance(point, bias, size, texel, plane) > stored;
+        }
+        sum += hides ? depth : 0.0;
+        blockers += hides ? 1.0 : 0.0;
     }
     return sum / max(blockers, 1.0);
 }

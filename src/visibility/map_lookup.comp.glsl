@@ -132,7 +132,7 @@ float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn, uint ta
     bool at_infinity = kLightKind == kLightDirectional;
     mat2 texels = texels_across_light(texel, to_light);
     mat2 search = at_least_a_texel(pcss_search_m(point, texel, to_light), texels);
-    float blocker = blocker_depth(map, frame.size_texels, point, search, turn, taps);
+    float blocker = blocker_depth(map, frame.size_texels, frame.bias, point, search, turn, taps);
     float behind = at_infinity ? (blocker - point.depth) / depth_per_m
                                : blocker / max(point.depth, 1e-20) - 1.0;
     float penumbra_m = clamp(frame.receivers.light.radius * behind, 0.0, most_m);

@@ -50,6 +50,12 @@ struct ForGpu {
                 {{"map_size", map_size_for(frame.size)}},
                 "a cube of perspective maps has its texels where the picture has pixels"};
     }
+    Choice operator()(const SphereLight&) const {
+        return {"psm",
+                {{"map_size", map_size_for(frame.size)}, {"filter", std::string("pcss")}},
+                "a cube of perspective maps has its texels where the picture has pixels, and pcss "
+                "the sphere's penumbra"};
+    }
     Choice operator()(const SpotLight& light) const {
         if (light.outer_angle_rad > kWidestSpotRad) return traced("no map holds so wide a spot");
         return {

@@ -2,9 +2,10 @@
 // a tetrahedron. P. Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems 2004, chapter 12; H.-C.
 // Liao, "Shadow Mapping for Omnidirectional Light Using Tetrahedron Mapping", GPU Pro, 2010.
 // Departures: the faces are layers of an array, each fitted to the receivers that it is for, and
-// those that are for none are not drawn.
+// those that are for none are not drawn. A sphere is seen from its centre.
 
 #include "technique/map_technique.h"
+#include "visibility/light_shape.h"
 
 namespace gnomon {
 
@@ -48,7 +49,7 @@ public:
 
 private:
     MapPlan plan(const Frame& frame, const Seen& seen) const override {
-        const DVec3 position_ws(std::get<PointLight>(frame.light).position_ws);
+        const DVec3 position_ws = center_ws(frame.light);
         MapPlan plan{.choice = LayerChoice::by_axis};
         for (const LightView& view : options_.projection == Projection::cube
                                          ? cube_views(position_ws)
@@ -68,7 +69,7 @@ const TechniqueInfo& omni_info() {
         .name = "omni",
         .title = "Omnidirectional shadow map",
         .source = "gerasimov2004, liao2010",
-        .lights = LightKinds::point,
+        .lights = LightKinds::point | LightKinds::sphere,
         .penumbra = Penumbra::fixed_width,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
         .make = [](Context& context, const Params& params) -> std::unique_ptr<Technique> {

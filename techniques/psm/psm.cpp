@@ -7,6 +7,7 @@
 
 #include "post_projective.h"
 #include "technique/map_technique.h"
+#include "visibility/light_shape.h"
 
 #include <glm/geometric.hpp>
 
@@ -52,9 +53,9 @@ const ParamTable<Options>& param_table() {
 }
 
 glm::dvec4 homogeneous(const Light& light) {
-    if (const auto* point = std::get_if<PointLight>(&light))
-        return {DVec3(point->position_ws), 1.0};
-    return {glm::normalize(DVec3(std::get<DirectionalLight>(light).to_light_ws)), 0.0};
+    if (const auto* sun = std::get_if<DirectionalLight>(&light))
+        return {glm::normalize(DVec3(sun->to_light_ws)), 0.0};
+    return {center_ws(light), 1.0};
 }
 
 /// Height towards a light at infinity, from the point where the map is finest: a perspective of it,
@@ -86,13 +87,13 @@ public:
 
 private:
     MapPlan plan(const Frame& frame, const Seen& seen) const override {
-        const bool is_point = std::holds_alternative<PointLight>(frame.light);
+        const bool is_lamp = !std::holds_alternative<DirectionalLight>(frame.light);
         const bool is_parallel = frame.camera.ortho_height_m > 0.0f;
         if (is_parallel || seen.range.far_m <= seen.range.near_m)
-            return is_point ? cube_of_world(frame, seen) : uniform(frame, seen);
+            return is_lamp ? cube_of_world(frame, seen) : uniform(frame, seen);
         const psm::VirtualCamera camera = camera_for(frame, seen);
-        return options_.map == Map::cube || is_point ? cube(frame, seen, camera)
-                                                     : single(frame, seen, camera);
+        return options_.map == Map::cube || is_lamp ? cube(frame, seen, camera)
+                                                    : single(frame, seen, camera);
     }
 
     psm::VirtualCamera camera_for(const Frame& frame, const Seen& seen) const {
@@ -186,7 +187,7 @@ const TechniqueInfo& psm_info() {
         .name = "psm",
         .title = "Perspective shadow map",
         .source = "stamminger2002, kozlov2004",
-        .lights = LightKinds::directional | LightKinds::point,
+        .lights = LightKinds::directional | LightKinds::point | LightKinds::sphere,
         .penumbra = Penumbra::fixed_width,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
         .make = [](Context& context, const Params& params) -> std::unique_ptr<Technique> {

@@ -156,25 +156,46 @@ TEST_F(MapTechniqueTest, SimplifiedCastersChangeHardlyAPixel) {
     }
 }
 
-// Bytes hold enough of a distance, near a lamp too.
+// Bytes hold enough of a distance, near a lamp too, and to tell how wide a penumbra is.
 TEST_F(MapTechniqueTest, DistancesGiveThePicturesOfDepths) {
     for (const auto& [technique, scene] :
          {std::pair{"pssm", "field-small"}, {"shadow_map", "courtyard"}, {"omni", "torches"}}) {
-        const Frame frame = frame_of(scene);
-        const Visibility depths = make_technique(context(), technique)->render(frame);
-        for (const char* content : {"distance", "packed", "packed_two"}) {
-            const Visibility distances =
-                make_technique(context(), technique, {{"content", content}})->render(frame);
-            EXPECT_LT(changed(depths, distances), 2e-4) << technique << ", " << content;
+        Frame frame = frame_of(scene);
+        if (const auto* torch = std::get_if<PointLight>(&frame.light))
+            frame.light = SphereLight{.center_ws = torch->position_ws};
+        for (const std::string filter : {"box_3x3", "pcss"}) {
+            Params params{{"filter", filter}};
+            const Visibility depths = make_technique(context(), technique, params)->render(frame);
+            for (const char* content : {"distance", "packed", "packed_two"}) {
+                params.set("content", content);
+                const Visibility distances =
+                    make_technique(context(), technique, params)->render(frame);
+                EXPECT_LT(changed(depths, distances), 2e-4)
+                    << technique << ", " << filter << ", " << content;
+            }
         }
     }
 }
 
-TEST_F(MapTechniqueTest, PcssOfBytesIsRefused) {
-    EXPECT_THROW(make_technique(context(), "pssm", {{"filter", "pcss"}, {"content", "packed"}}),
-                 Error);
-    EXPECT_NO_THROW(
-        make_technique(context(), "pssm", {{"filter", "pcss"}, {"content", "variance"}}));
+TEST_F(MapTechniqueTest, PcssMakesThePenumbraOfALampsSize) {
+    const Scene scene = make_builtin_scene("jack-o-lantern");
+    for (const float radius_m : {0.05f, 0.1f}) {
+        const Frame frame{
+            .scene = scene,
+            .camera = scene.cameras().at(0),
+            .light = SphereLight{.center_ws = {0.6f, 1.2f, 0.5f}, .radius_m = radius_m},
+            .size = {320, 180}};
+        const Visibility truth = trace_visibility(context(), frame, {.samples = 64});
+        const ComparisonMask mask = comparison_mask(context(), frame);
+        for (const char* technique : {"omni", "psm"}) {
+            const auto rmse = [&](const char* filter) {
+                const auto made =
+                    make_technique(context(), technique, {{"filter", filter}, {"map_size", 2048}});
+                return compare(made->render(frame), truth, mask).rmse;
+            };
+            EXPECT_LT(rmse("pcss"), 0.6 * rmse("box_3x3")) << technique << ", " << radius_m;
+        }
+    }
 }
 
 TEST_F(MapTechniqueTest, ReusedMapsAreThoseThatWouldBeDrawn) {
