@@ -181,10 +181,14 @@ void Commands::end_pass() {
 }
 
 void Commands::begin_drawing(const Targets& targets) {
+    const auto layer_view = [&](const Image& image) {
+        return image.layer_view(static_cast<unsigned>(targets.layer));
+    };
     std::vector<VkRenderingAttachmentInfo> colors;
     for (const Image* image : targets.colors) {
+        const bool one_layer = targets.layer >= 0 && image->info().array;
         colors.push_back({.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                          .imageView = image->view(),
+                          .imageView = one_layer ? layer_view(*image) : image->view(),
                           .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                           .loadOp = targets.clear_colors ? VK_ATTACHMENT_LOAD_OP_CLEAR
                                                          : VK_ATTACHMENT_LOAD_OP_LOAD,
@@ -203,12 +207,10 @@ void Commands::begin_drawing(const Targets& targets) {
     if (targets.depth != nullptr) {
         has_stencil = targets.depth->attachment_view() != VK_NULL_HANDLE;
         depth.imageView = has_stencil ? targets.depth->attachment_view() : targets.depth->view();
-        if (targets.depth_layer >= 0) {
-            depth.imageView = targets.depth->layer_view(static_cast<unsigned>(targets.depth_layer));
-        }
+        if (targets.layer >= 0) depth.imageView = layer_view(*targets.depth);
         stencil.imageView = depth.imageView;
     }
-    const bool all_layers = targets.depth != nullptr && targets.depth_layer < 0;
+    const bool all_layers = targets.depth != nullptr && targets.layer < 0;
     const std::uint32_t layers = all_layers ? targets.depth->info().layers : 1;
     const VkRect2D area =
         targets.area.value_or(VkRect2D{{0, 0}, {targets.size.width, targets.size.height}});

@@ -46,7 +46,7 @@ struct LayerArea {
 struct Targets {
     std::vector<const Image*> colors;
     const Image* depth = nullptr;
-    int depth_layer = -1;  ///< of an array; -1: all layers, among which vertex shaders choose
+    int layer = -1;  ///< of arrays; -1: all layers, among which vertex shaders choose
     Extent size;
     std::optional<VkRect2D> area;  ///< all that is cleared and drawn into; else all of it
     bool clear_colors = true;

@@ -34,7 +34,7 @@ MapTechnique::MapTechnique(Context& context, const TechniqueInfo& info, const Ma
 
 MapTechnique::Maps::Maps(const gpu::Device& device, const MapOptions& options)
     : map(device), bounds(device, options) {
-    if (options.content == MapContent::depth) return;
+    if (!is_computed(options.content)) return;
     contents =
         std::make_unique<ContentMap>(device, options.content, static_cast<float>(options.exponent),
                                      static_cast<float>(options.blur));
@@ -106,15 +106,17 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
         layers_.layers.push_back(layer.lookup);
         fits.push_back(layer.lookup.fit);
     }
+    const bool ids = options_.content == MapContent::object_id;
     {
         const gpu::Pass pass(commands, "depth");
         is_drawn = map.record(commands, input.scene, drawn,
                               {.ignore_alpha = input.frame.ignore_alpha,
-                               .reuse = options_.reuse_maps,
+                               .reuse = options_.reuse_maps && !ids,
                                .multi_draw = options_.multi_draw,
-                               .layered = options_.layered,
+                               .layered = options_.layered && !ids,
                                .positions_only = options_.positions_only,
-                               .optimised_indices = options_.optimised_indices});
+                               .optimised_indices = options_.optimised_indices,
+                               .ids = ids});
     }
     for (std::size_t i = 0; i < fits.size(); ++i)
         fits[i] = map.drawn_fit(i, fits[i]);
@@ -130,8 +132,8 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     }
     const gpu::Pass pass(commands, "lookup");
     lookup_.record(commands, input.receivers, input.frame.light, layers_,
-                   contents ? contents->image() : map.image(), is_bounded ? &bounds : nullptr,
-                   survey_.get(), visibility);
+                   contents ? contents->image() : map.image(), ids ? &map.ids() : nullptr,
+                   is_bounded ? &bounds : nullptr, survey_.get(), visibility);
 }
 
 void MapTechnique::describe_texels(const Frame& frame, Visibility::Impl& out) {

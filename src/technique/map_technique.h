@@ -95,10 +95,11 @@ std::vector<typename ParamTable<Options>::Row> map_rows() {
                                "see, or what its depths show of them, which the host waits for"),
         choice<Options, MapContent>(
             "content", &Options::content,
-            {"depth", "distance", "packed", "packed_two", "exponential", "variance",
+            {"depth", "distance", "packed", "packed_two", "object_id", "exponential", "variance",
              "exponential_variance", "moments"},
             "what a texel holds: what the light saw, as a depth or as a distance in a float, four "
-            "bytes or two; or what is blurred, and bounds how much of it hides a receiver"),
+            "bytes or two; whose depth it is, so that no object shadows itself; or what is "
+            "blurred, and bounds how much of it hides a receiver"),
         choice<Options, MapFilter>(
             "filter", &Options::filter,
             {"nearest", "hardware_2x2", "box_3x3", "box_4x4", "dithered_4", "taps_16", "disc",

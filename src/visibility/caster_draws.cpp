@@ -121,7 +121,7 @@ std::vector<CasterDraw> CasterDraws::add(const raster::GpuScene& scene, const Ma
             CasterDraw drawn = draw_of(scene, draw, layer, unit, options);
             drawn.culled = culled;
             add_part(draws, drawn,
-                     {Mat4(from_world * glm::dmat4(instance.world_from_local)), index});
+                     {Mat4(from_world * glm::dmat4(instance.world_from_local)), index, placed});
         }
     }
     return draws;

@@ -34,6 +34,7 @@ struct CasterOptions {
     bool layered = false;           ///< all layers in one pass, where they and the device allow it
     bool positions_only = true;     ///< from positions alone, else from whole vertices
     bool optimised_indices = true;  ///< in clusters, else meshes whole, as the scene has them
+    bool ids = false;  ///< beside depths, whose they are; drawn layer by layer, and never reused
 };
 
 /// Which triangles need not be drawn, by their corners' order in the map's image.
@@ -52,6 +53,7 @@ struct CasterDraw {
 struct CasterInstance {
     Mat4 clip_from_local{1.0f};
     std::uint32_t layer = 0;
+    std::uint32_t object = 0;  ///< index into Scene::instances()
 };
 
 /// What is drawn into a map, layer by layer: plain numbers, before any device hears of them.

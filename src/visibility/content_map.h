@@ -19,11 +19,17 @@ enum class MapContent {
     distance,    ///< 32-bit float; of lights within the world squared
     packed,      ///< the distance in four bytes
     packed_two,  ///< and in two, a whole part and a fraction
+    object_id,   ///< whose surface it is, beside the depth as it was drawn
     exponential,
     variance,
     exponential_variance,
     moments
 };
+
+/// Whether a ContentMap makes it from depths.
+inline bool is_computed(MapContent content) {
+    return content != MapContent::depth && content != MapContent::object_id;
+}
 
 inline bool is_blurred(MapContent content) {
     return content >= MapContent::exponential;

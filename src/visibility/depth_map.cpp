@@ -1,6 +1,10 @@
 #include "visibility/depth_map.h"
 
 #include "caster.vert.spv.h"
+#include "caster_id.frag.spv.h"
+#include "caster_id.vert.spv.h"
+#include "caster_id_masked.frag.spv.h"
+#include "caster_id_masked.vert.spv.h"
 #include "caster_layered.vert.spv.h"
 #include "caster_masked.frag.spv.h"
 #include "caster_masked.vert.spv.h"
@@ -8,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -17,6 +22,7 @@ namespace gnomon {
 namespace {
 
 constexpr VkFormat kDepthMapFormat = VK_FORMAT_D32_SFLOAT;
+constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;
 
 /// Of maps that are reused.
 constexpr VkImageUsageFlags kCopied =
@@ -32,24 +38,35 @@ constexpr double kLeastKept = 0.5;
 /// rows, by itself, than in tiles as it draws. Other devices clear as they draw.
 constexpr double kSparse = 0.5;
 
-gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamps_near,
-                              bool layered, bool positions_only) {
-    gpu::GraphicsPipelineInfo info;
-    if (masked) {
-        using enum gpu::BindingType;
-        info.vertex = layered ? std::span<const std::uint32_t>(shaders::caster_masked_layered_vert)
-                              : shaders::caster_masked_vert;
-        info.fragment = shaders::caster_masked_frag;
-        info.layout = {{storage_buffer, storage_buffer, texture},
-                       sizeof(raster::shared::CasterPush)};
-    } else {
-        info.vertex = layered ? std::span<const std::uint32_t>(shaders::caster_layered_vert)
-                              : shaders::caster_vert;
+/// What a pipeline for casters depends on.
+struct CasterState {
+    bool clamps_near = true, layered = false, positions_only = true, ids = false;
+};
+
+void set_shaders(gpu::GraphicsPipelineInfo& info, bool masked, const CasterState& state) {
+    using Code = std::span<const std::uint32_t>;
+    if (!masked) {
+        info.vertex = state.layered ? Code(shaders::caster_layered_vert) : shaders::caster_vert;
+        if (state.ids) info.vertex = shaders::caster_id_vert;
+        if (state.ids) info.fragment = shaders::caster_id_frag;
+        return;
     }
+    using enum gpu::BindingType;
+    info.vertex =
+        state.layered ? Code(shaders::caster_masked_layered_vert) : shaders::caster_masked_vert;
+    if (state.ids) info.vertex = shaders::caster_id_masked_vert;
+    info.fragment = state.ids ? Code(shaders::caster_id_masked_frag) : shaders::caster_masked_frag;
+    info.layout = {{storage_buffer, storage_buffer, texture}, sizeof(raster::shared::CasterPush)};
+}
+
+gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, const CasterState& state) {
+    gpu::GraphicsPipelineInfo info;
+    set_shaders(info, masked, state);
     info.depth_format = kDepthMapFormat;
-    info.depth_clamp = clamps_near;
+    if (state.ids) info.color_formats = {kIdFormat};
+    info.depth_clamp = state.clamps_near;
     raster::set_position_input(info);
-    if (!positions_only) info.vertex_stride = sizeof(raster::WholeVertex);
+    if (!state.positions_only) info.vertex_stride = sizeof(raster::WholeVertex);
     info.instance_stride = sizeof(CasterInstance);
     for (std::uint32_t column = 0; column < 4; ++column) {
         info.attributes.push_back({.location = 1 + column,
@@ -57,12 +74,14 @@ gpu::Pipeline caster_pipeline(const gpu::Device& device, bool masked, bool clamp
                                    .format = VK_FORMAT_R32G32B32A32_SFLOAT,
                                    .offset = column * static_cast<std::uint32_t>(sizeof(Vec4))});
     }
-    if (layered) {
-        info.attributes.push_back({.location = 5,
+    const auto add_number = [&](std::uint32_t location, std::size_t offset) {
+        info.attributes.push_back({.location = location,
                                    .binding = 1,
                                    .format = VK_FORMAT_R32_UINT,
-                                   .offset = offsetof(CasterInstance, layer)});
-    }
+                                   .offset = static_cast<std::uint32_t>(offset)});
+    };
+    if (state.layered) add_number(5, offsetof(CasterInstance, layer));
+    if (state.ids) add_number(6, offsetof(CasterInstance, object));
     return gpu::Pipeline(device, info);
 }
 
@@ -104,7 +123,9 @@ DepthMap::DepthMap(const gpu::Device& device) : device_(device) {}
 
 bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
                       std::span<const MapLayer> layers, const CasterOptions& options) {
+    assert(!options.ids || (!options.reuse && !options.layered));
     make_image(layers.front().fit.size_texels, static_cast<unsigned>(layers.size()), options.reuse);
+    make_ids(options.ids);
     make_buffers(scene.parts().size() * layers.size() * (options.reuse ? kMostStrips : 1));
     make_vertices(commands, scene.scene(), options);
     keep_what_holds(scene, options);
@@ -117,6 +138,7 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
     draw_passes(commands, scene, options);
     draw_patches(commands, scene, options);
     commands.use(image_, gpu::Use::sampled);
+    if (ids_) commands.use(ids_, gpu::Use::sampled);
     return true;
 }
 
@@ -146,6 +168,20 @@ void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {
     scratch_ = gpu::Image();
     if (!reuse) return;
     scratch_ = gpu::Image(device_, {.size = size, .format = kDepthMapFormat, .usage = usage});
+}
+
+void DepthMap::make_ids(bool wanted) {
+    if (!wanted) ids_ = gpu::Image();
+    if (!wanted ||
+        (ids_ && ids_.size() == image_.size() && ids_.info().layers == image_.info().layers)) {
+        return;
+    }
+    ids_ = gpu::Image(device_,
+                      {.size = image_.size(),
+                       .format = kIdFormat,
+                       .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                       .layers = image_.info().layers,
+                       .array = true});
 }
 
 void DepthMap::make_still_image() {
@@ -298,13 +334,15 @@ void DepthMap::upload(gpu::Commands& commands) {
     commands.update(commands_, std::as_bytes(std::span(draws)), gpu::Use::vertex_read);
 }
 
-DepthMap::Pipelines& DepthMap::pipelines(bool clamps_near, bool layered, bool positions_only) {
+DepthMap::Pipelines& DepthMap::pipelines(bool clamps_near, bool layered,
+                                         const CasterOptions& options) {
+    const CasterState state{clamps_near, layered, options.positions_only, options.ids};
     std::optional<Pipelines>& made =
-        pipelines_[clamps_near ? 1 : 0][layered ? 1 : 0][positions_only ? 1 : 0];
+        pipelines_[clamps_near ? 1 : 0][layered ? 1 : 0][options.positions_only ? 1 : 0]
+                  [options.ids ? 1 : 0];
     if (!made) {
-        made.emplace(
-            Pipelines{caster_pipeline(device_, false, clamps_near, layered, positions_only),
-                      caster_pipeline(device_, true, clamps_near, layered, positions_only)});
+        made.emplace(Pipelines{caster_pipeline(device_, false, state),
+                               caster_pipeline(device_, true, state)});
     }
     return *made;
 }
@@ -321,15 +359,21 @@ void DepthMap::draw_passes(gpu::Commands& commands, const raster::GpuScene& scen
     gpu::Image& map = kept();
     clear_sparse(commands);
     commands.use(map, gpu::Use::depth_target);
+    std::vector<const gpu::Image*> ids;
+    if (ids_) {
+        commands.use(ids_, gpu::Use::color_target);
+        ids = {&ids_};
+    }
     std::uint64_t first_command = 0;
     for (const Pass& pass : passes_) {
-        commands.begin_drawing({.depth = &map,
-                                .depth_layer = pass.layer,
+        commands.begin_drawing({.colors = ids,
+                                .depth = &map,
+                                .layer = pass.layer,
                                 .size = map.size(),
                                 .area = area_of(pass.texels),
                                 .clear_depth = !pass.is_cleared});
-        draw(commands, scene, pipelines(pass.clamps_near, pass.layer < 0, options.positions_only),
-             pass.draws, first_command, options);
+        draw(commands, scene, pipelines(pass.clamps_near, pass.layer < 0, options), pass.draws,
+             first_command, options);
         commands.end_drawing();
         first_command += pass.draws.size();
     }
@@ -352,12 +396,12 @@ void DepthMap::draw_patches(gpu::Commands& commands, const raster::GpuScene& sce
         first_command += pass.draws.size();
     for (const Patch& patch : patches_) {
         commands.begin_drawing({.depth = &image_,
-                                .depth_layer = static_cast<int>(patch.layer),
+                                .layer = static_cast<int>(patch.layer),
                                 .size = image_.size(),
                                 .area = area_of(around(patch.texels)),
                                 .clear_depth = false});
-        draw(commands, scene, pipelines(patch.clamps_near, false, options.positions_only),
-             patch.draws, first_command, options);
+        draw(commands, scene, pipelines(patch.clamps_near, false, options), patch.draws,
+             first_command, options);
         commands.end_drawing();
         first_command += patch.draws.size();
     }

@@ -28,6 +28,8 @@ public:
                 std::span<const MapLayer> layers, const CasterOptions& options);
 
     const gpu::Image& image() const { return image_; }
+    /// Where ids were asked for: whose depths these are, index into Scene::instances(); R32UI.
+    const gpu::Image& ids() const { return ids_; }
     /// Of a layer that was planned as `planned`: one that is not needed may hold what an earlier
     /// frame drew into it.
     LightFit drawn_fit(std::size_t layer, LightFit planned) const {
@@ -36,7 +38,8 @@ public:
     }
     std::uint64_t memory_bytes() const {
         return image_.memory_bytes() + still_.memory_bytes() + scratch_.memory_bytes() +
-               instances_.memory_bytes() + commands_.memory_bytes() + vertices_.memory_bytes();
+               ids_.memory_bytes() + instances_.memory_bytes() + commands_.memory_bytes() +
+               vertices_.memory_bytes();
     }
     /// Drawn by the last record(), over all layers: triangles, and the texels that they could
     /// reach.
@@ -79,6 +82,7 @@ private:
     };
 
     void make_image(unsigned size_texels, unsigned layers, bool reuse);
+    void make_ids(bool wanted);
     void make_still_image();
     void make_buffers(std::size_t most_draws);
     void make_vertices(gpu::Commands& commands, const Scene& scene, const CasterOptions& options);
@@ -103,14 +107,15 @@ private:
               const CasterOptions& options);
     void bind_triangles(gpu::Commands& commands, const raster::GpuScene& scene,
                         const CasterOptions& options) const;
-    Pipelines& pipelines(bool clamps_near, bool layered, bool positions_only);
+    Pipelines& pipelines(bool clamps_near, bool layered, const CasterOptions& options);
     /// What passes are drawn into.
     gpu::Image& kept() { return moving_.empty() ? image_ : still_; }
 
     const gpu::Device& device_;
-    // By whether the near plane clamps, whether layered, and whether from positions alone.
-    std::optional<Pipelines> pipelines_[2][2][2];
+    // By whether the near plane clamps, layered, from positions alone, with ids.
+    std::optional<Pipelines> pipelines_[2][2][2][2];
     gpu::Image image_;
+    gpu::Image ids_;      // only where they are asked for
     gpu::Image still_;    // without the casters that move; only where some do
     gpu::Image scratch_;  // for what moves within a layer; only where maps are reused
     CasterDraws casters_;

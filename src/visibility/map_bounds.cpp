@@ -77,8 +77,11 @@ Vec3 MapBounds::reach_texels() const {
 
 bool MapBounds::pay(SkipUniform skip, Extent size, const gpu::Image& depths,
                     std::span<const LightFit> fits) const {
-    // Read once, without a filter.
-    if (skip == SkipUniform::never || is_blurred(reading_.content)) return false;
+    // Read once, without a filter; or by some receivers and not by others.
+    if (skip == SkipUniform::never || is_blurred(reading_.content) ||
+        reading_.content == MapContent::object_id) {
+        return false;
+    }
     // Distances from a light within the world have no plane.
     if (reading_.content != MapContent::depth &&
         std::ranges::any_of(fits, [](const LightFit& fit) { return fit.far_m > 0.0; })) {

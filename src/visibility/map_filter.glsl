@@ -2,7 +2,7 @@
 // texel's centre, where the plane's stored depth is just that, so that a plane needs no bias however wide
 // the filter. G. King, "Shadow Mapping Algorithms", NVIDIA 2004; J. Isidoro, "Shadow Mapping: GPU-based Tips
 // and Techniques", GDC 2006, for receiver planes; here at texel centres, from the exact normal. Includers
-// declare kContent and kTaps.
+// declare kContent and kTaps, and bind map_ids.
 
 #ifndef GNOMON_VISIBILITY_MAP_FILTER_GLSL
 #define GNOMON_VISIBILITY_MAP_FILTER_GLSL
@@ -24,6 +24,7 @@ struct MapPoint {
     float end;       // the depth that it is followed to towards the light
     float layer;
     MapSpace space;  // of its layer
+    uint object;     // whose surface it is
 };
 
 // The receiver's own plane at texels' centres. Where it falls away steeply it soon ends at another surface,
@@ -34,9 +35,19 @@ vec4 plane_depths(MapPoint point, vec4 dx, vec4 dy) {
     return clamp(planes, max(point.depth - point.fall, 0.0), point.end);
 }
 
+const bool kStoresDepths = kContent == kContentDepth || kContent == kContentObjectId;
+
+// As if nothing were there, where the map sees the receiver's own object.
+float of_others(float depth, float size, vec2 texel, MapPoint point) {
+    if (kContent != kContentObjectId) return depth;
+    ivec3 at = ivec3(vec3(clamp(texel, vec2(0.0), vec2(size - 1.0)), point.layer));
+    return texelFetch(map_ids, at, 0).x == point.object ? 0.0 : depth;
+}
+
 // Or the depth, where that is stored.
-float stored_distance(sampler2DArray map, float size, vec2 texel, float layer) {
-    vec4 bytes = texelFetch(map, ivec3(vec3(clamp(texel, vec2(0.0), vec2(size - 1.0)), layer)), 0);
+float stored_distance(sampler2DArray map, float size, vec2 texel, MapPoint point) {
+    vec4 bytes = texelFetch(map, ivec3(vec3(clamp(texel, vec2(0.0), vec2(size - 1.0)), point.layer)), 0);
+    if (kStoresDepths) return of_others(bytes.x, size, texel, point);
     return kContent == kContentPackedTwo ? unpacked_from_two(bytes)
                                          : (kContent == kContentPacked ? unpacked_from_four(bytes)
                                                                        : bytes.x);
@@ -59,7 +70,7 @@ vec2 fallen_texel(MapPoint point) {
 // be lit above.
 MapPoint ended(MapPoint point, float size, float stored) {
     float depth = stored;
-    if (kContent != kContentDepth) {
+    if (!kStoresDepths) {
         depth = depth_of(point.space, (fallen_texel(point) + 0.5) / size, stored);
     }
     bool hidden = depth - point.depth > point.fall;
@@ -73,10 +84,10 @@ vec4 stored_quad(sampler2DArray map, float size, MapPoint point, vec2 corner) {
     if (kContent == kContentDepth) {
         return textureGather(map, vec3((corner + 1.0) / size, point.layer));
     }
-    return vec4(stored_distance(map, size, corner + vec2(0.0, 1.0), point.layer),
-                stored_distance(map, size, corner + vec2(1.0, 1.0), point.layer),
-                stored_distance(map, size, corner + vec2(1.0, 0.0), point.layer),
-                stored_distance(map, size, corner, point.layer));
+    return vec4(stored_distance(map, size, corner + vec2(0.0, 1.0), point),
+                stored_distance(map, size, corner + vec2(1.0, 1.0), point),
+                stored_distance(map, size, corner + vec2(1.0, 0.0), point),
+                stored_distance(map, size, corner, point));
 }
 
 // Of a square's four texels, the one in the column and row that are chosen.
@@ -89,7 +100,7 @@ float chosen(vec4 quad, bvec2 second) {
 vec4 lit_quad(vec4 stored, float size, MapBias bias, MapPoint point, vec2 corner) {
     vec2 d = corner + 0.5 - point.texel;
     vec4 planes = plane_depths(point, d.x + vec4(0.0, 1.0, 1.0, 0.0), d.y + vec4(1.0, 1.0, 0.0, 0.0));
-    if (kContent == kContentDepth) return vec4(greaterThanEqual(planes, stored));
+    if (kStoresDepths) return vec4(greaterThanEqual(planes, stored));
     vec4 distances = vec4(
         compared_distance(point, bias, size, corner + vec2(0.0, 1.0), planes.x),
         compared_distance(point, bias, size, corner + vec2(1.0, 1.0), planes.y),
@@ -102,13 +113,9 @@ float lit_nearest(sampler2DArray map, float size, MapBias bias, MapPoint point) 
     vec2 texel = clamp(floor(point.texel), 0.0, size - 1.0);
     vec2 d = texel + 0.5 - point.texel;
     float plane = plane_depths(point, vec4(d.x), vec4(d.y)).x;
-    if (kContent == kContentDepth) {
-        return plane >= texelFetch(map, ivec3(vec3(texel, point.layer)), 0).x ? 1.0 : 0.0;
-    }
-    return compared_distance(point, bias, size, texel, plane) <=
-                   stored_distance(map, size, texel, point.layer)
-               ? 1.0
-               : 0.0;
+    float stored = stored_distance(map, size, texel, point);
+    if (kStoresDepths) return plane >= stored ? 1.0 : 0.0;
+    return compared_distance(point, bias, size, texel, plane) <= stored ? 1.0 : 0.0;
 }
 
 float mixed(vec4 quad, vec2 f) { return mix(mix(quad.w, quad.z, f.x), mix(quad.x, quad.y, f.x), f.y); }
@@ -174,7 +181,7 @@ float lit_box_4x4(sampler2DArray map, float size, MapBias bias, MapPoint point) 
 
 // The point, for filters whose taps are anywhere.
 MapPoint ended_by_fetch(sampler2DArray map, float size, MapPoint point) {
-    return ended(point, size, stored_distance(map, size, fallen_texel(point), point.layer));
+    return ended(point, size, stored_distance(map, size, fallen_texel(point), point));
 }
 
 // Four of the sixteen taps, the others by turns in squares of four pixels, so that the eye averages them.
@@ -249,10 +256,10 @@ float blocker_depth(sampler2DArray map, float size, MapBias bias, MapPoint point
         vec2 texel = clamp(floor(at), 0.0, size - 1.0);
         vec2 d = texel + 0.5 - point.texel;
         float plane = plane_depths(point, vec4(d.x), vec4(d.y)).x;
-        float stored = stored_distance(map, size, texel, point.layer);
+        float stored = stored_distance(map, size, texel, point);
         float depth = stored;
         bool hides = stored > plane;
-        if (kContent != kContentDepth) {
+        if (!kStoresDepths) {
             depth = depth_of(point.space, (texel + 0.5) / size, stored);
             hides = compared_distance(point, bias, size, texel, plane) > stored;
         }

@@ -17,6 +17,8 @@ layout(constant_id = 6) const uint kLayerChoice = kChooseByDistance;
 layout(constant_id = 7) const uint kProof = kProofNone;
 layout(constant_id = 8) const uint kListed = 0u;  // only blocks of pixels that are listed
 
+layout(set = 0, binding = 7) uniform usampler2DArray map_ids;  // of kContentObjectId
+
 #include "visibility/map_bias.glsl"
 #include "visibility/map_bounds.glsl"
 #include "visibility/map_filter.glsl"
@@ -30,6 +32,7 @@ layout(set = 0, binding = 3) uniform sampler2DArray map;
 layout(set = 0, binding = 4, scalar) uniform Frame { MapFrame frame; };
 layout(set = 0, binding = 5) uniform sampler2DArray bounds;
 layout(set = 0, binding = 6, scalar) readonly buffer Blocks { uint blocks[]; };
+layout(set = 0, binding = 8, rg32ui) uniform readonly uimage2D receiver_ids;
 layout(push_constant, scalar) uniform Push { MapLookupPush push; };
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
@@ -210,7 +213,7 @@ vec2 step_on_plane(TexelAt texel, vec3 p_es, vec3 normal_ws, uvec2 next, float d
 }
 
 // `known`: what is known beforehand, or kNotProven.
-float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint,
+float lit_by_map(vec3 p_es, uint object, TexelAt texel, Layer layer, vec3 to_light, mat2 footprint,
                  uvec2 pixel, float known) {
     vec4 p = vec4(p_es, 1.0);
     vec3 uvz = vec3(dot(layer.map.u, p), dot(layer.map.v, p), dot(layer.map.z, p));
@@ -220,7 +223,7 @@ float lit_by_map(vec3 p_es, TexelAt texel, Layer layer, vec3 to_light, mat2 foot
                               frame.bias.receiver_plane * texel.gradient,
                               frame.bias.cone * length(texel.gradient),
                               kMaxFall * texel.side_m * max(dot(texel.z, to_light), 0.0), kNearest,
-                              layer.index, layer.map.space);
+                              layer.index, layer.map.space, object);
     float lit = known;
     if (kProof != kProofNone) {
         float proven = proven_lit(bounds, frame.size_texels, frame.bounded_texels, frame.bias,
@@ -276,7 +279,8 @@ void main() {
     }
     bool faces = faces_light(frame.receivers.light, p_es, normal_ws);
     float known = depth > 0.0 ? (faces ? kNotProven : kProvenDark) : kProvenLit;
-    float lit = lit_by_map(biased_es, texel, layer, to_light, footprint, pixel, known);
+    uint object = kContent == kContentObjectId ? imageLoad(receiver_ids, at).x : 0u;
+    float lit = lit_by_map(biased_es, object, texel, layer, to_light, footprint, pixel, known);
     lit = faces ? lit : 0.0;
     if (all(lessThan(pixel, frame.receivers.size))) {
         imageStore(visibility, at, vec4(depth > 0.0 ? lit : 1.0));

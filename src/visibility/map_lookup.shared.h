@@ -26,10 +26,11 @@ const uint kContentDepth = 0u;
 const uint kContentDistance = 1u;
 const uint kContentPacked = 2u;
 const uint kContentPackedTwo = 3u;
-const uint kContentExponential = 4u;  // this and what follows is blurred instead of compared
-const uint kContentVariance = 5u;
-const uint kContentExponentialVariance = 6u;
-const uint kContentMoments = 7u;
+const uint kContentObjectId = 4u;     // beside the depth
+const uint kContentExponential = 5u;  // this and what follows is blurred instead of compared
+const uint kContentVariance = 6u;
+const uint kContentExponentialVariance = 7u;
+const uint kContentMoments = 8u;
 
 const uint kChooseByDistance = 0u;
 const uint kChooseByAxis = 1u;

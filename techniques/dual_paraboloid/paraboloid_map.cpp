@@ -69,7 +69,7 @@ void ParaboloidMap::record(gpu::Commands& commands, const raster::GpuScene& scen
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (!layers[i].needed) continue;
         commands.begin_drawing(
-            {.depth = &image_, .depth_layer = static_cast<int>(i), .size = image_.size()});
+            {.depth = &image_, .layer = static_cast<int>(i), .size = image_.size()});
         draw(commands, scene, view, layers[i], ignore_alpha);
         commands.end_drawing();
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace gnomon {
@@ -174,6 +175,34 @@ TEST_F(MapTechniqueTest, DistancesGiveThePicturesOfDepths) {
                     << technique << ", " << filter << ", " << content;
             }
         }
+    }
+}
+
+// Without any bias, in any projection; and what other objects cast stays.
+TEST_F(MapTechniqueTest, ObjectIdsEndSelfShadowing) {
+    Frame frame = frame_of("cube");
+    const auto light = std::get<DirectionalLight>(frame.light);
+    const Params bare{{"bias_constant", 0.0},
+                      {"bias_slope", 0.0},
+                      {"normal_offset", 0.0},
+                      {"receiver_plane", false},
+                      {"caster_error", 0.0}};
+    for (const char* technique : {"shadow_map", "pssm", "lispsm", "tsm", "psm", "omni"}) {
+        const bool lamp = std::string_view(technique) == "omni";
+        if (lamp) frame.light = PointLight{.position_ws = 6.0f * light.to_light_ws};
+        const Visibility truth = trace_visibility(context(), frame);
+        const ComparisonMask mask = comparison_mask(context(), frame);
+        const auto error = [&](const char* content) {
+            Params params = bare;
+            params.set("content", content);
+            return compare(make_technique(context(), technique, params)->render(frame), truth,
+                           mask);
+        };
+        EXPECT_GT(error("depth").artefact_shadow, 0.05) << technique;
+        const Comparison with_ids = error("object_id");
+        EXPECT_EQ(with_ids.artefact_shadow, 0.0) << technique;
+        EXPECT_EQ(with_ids.artefact_lit, 0.0) << technique;
+        EXPECT_LT(with_ids.false_lit + with_ids.false_shadow, 0.002) << technique;
     }
 }
 
