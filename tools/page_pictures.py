@@ -41,6 +41,7 @@ ON_GROUND = "--light point:position=0,0.02,0 --ambient 0 --exposure 4000"  # by 
 AUTO_GPU = "--technique auto --auto.device gpu"
 LOW = "courtyard --light sun:elevation=25,azimuth=120"
 STEEP = "courtyard --light sun:elevation=80,azimuth=30"
+TREE_BEHIND = "--camera eye=-9,1.8,50,target=-8,0.8,38 --light sun:elevation=20,azimuth=180"
 
 # Picture: size to render, crop (left, top, right, bottom) in px, panels in a row, and what each panel shows.
 PICTURES = {
@@ -90,6 +91,11 @@ PICTURES = {
         for light in ("elevation=85,azimuth=0", "elevation=30,azimuth=180", "elevation=30,azimuth=90", "elevation=30,azimuth=0")
         for choice in ("", " --psm.unit_cube_clipping false", " --psm.virtual_camera slide_back",
                        " --psm.virtual_camera none")]),
+    "psm-infinity": ("640x360", (0, 60, 640, 360), 2, [
+        f"field-small {TREE_BEHIND}{technique}"
+        for technique in ("", " --technique psm --psm.virtual_camera none --psm.beyond_infinity false",
+                          " --technique psm --psm.virtual_camera slide_back --psm.beyond_infinity false",
+                          " --technique psm --psm.virtual_camera none")]),
     "psm-near": ("1280x720", (0, 380, 480, 620), 2, [
         f"courtyard --technique psm --psm.virtual_camera {camera}" for camera in ("none", "near_quad")]),
     "pssm": ("1280x720", (440, 300, 760, 460), 3, [

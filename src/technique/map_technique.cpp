@@ -17,8 +17,11 @@ BiasOptions bias(const MapOptions& options) {
 
 /// What is in a map that is reused must not depend on what the camera sees just now.
 CasterVolume drawn_casters(const MapOptions& options, const PlannedLayer& layer) {
-    if (!options.cull_casters) return {};
-    return options.reuse_maps ? CasterVolume(layer.lookup.fit) : layer.casters;
+    CasterVolume casters;
+    if (options.cull_casters)
+        casters = options.reuse_maps ? CasterVolume(layer.lookup.fit) : layer.casters;
+    if (layer.lost_behind_ws) casters.keep_in_front(*layer.lost_behind_ws);
+    return casters;
 }
 
 }  // namespace

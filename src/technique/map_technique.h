@@ -13,6 +13,7 @@
 #include <concepts>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace gnomon {
@@ -140,6 +141,8 @@ struct PlannedLayer {
     LookupLayer lookup;
     CasterVolume casters;
     bool needed = true;  ///< false: no receiver looks there
+    /// A plane (unit normal, offset) behind which casters are not drawn, though they cast.
+    std::optional<glm::dvec4> lost_behind_ws = {};
 };
 
 struct MapPlan {

@@ -33,6 +33,9 @@ public:
     /// Leaves out what cannot be seen in a part of the map.
     void keep_within(const LightFit& fit, const TexelRect& texels);
 
+    /// Leaves out what is wholly behind a plane: (unit normal to what is kept, offset).
+    void keep_in_front(const glm::dvec4& plane_ws) { sides_.push_back({plane_ws}); }
+
     /// Leaves out what no receiver of the mask is behind.
     void keep_before(ReceiverMask receivers) { receivers_ = std::move(receivers); }
 

@@ -82,6 +82,10 @@ std::vector<DVec3> VirtualCamera::corners_ws() const {
     return corners;
 }
 
+glm::dvec4 VirtualCamera::infinity_ws() const {
+    return -glm::transpose(view_from_world)[2];
+}
+
 VirtualCamera virtual_camera(const Camera& camera, Extent size, DepthRange range) {
     const double tan_half_y = std::tan(0.5 * static_cast<double>(camera.fov_y_rad));
     return {.view_from_world = glm::dmat4(camera.view_from_world),

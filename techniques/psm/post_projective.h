@@ -23,6 +23,8 @@ struct VirtualCamera {
     glm::dmat4 clip_from_world() const;
     /// The cube's corners in the world.
     std::vector<DVec3> corners_ws() const;
+    /// What becomes the plane at infinity, through the eye: (unit normal to what is seen, offset).
+    glm::dvec4 infinity_ws() const;
 };
 
 /// The view camera with the given near and far planes.

@@ -28,6 +28,7 @@ struct Options : MapOptions {
     Map map = Map::single;
     Virtual virtual_camera = Virtual::near_quad;
     double slide = 1.0;
+    bool beyond_infinity = true;
     bool raise_near = true;
     bool unit_cube_clipping = true;
 };
@@ -44,6 +45,9 @@ const ParamTable<Options>& param_table() {
          number("slide", &Options::slide, 0.0, 100.0, "1",
                 "how far behind near_quad's camera is, of the geometric mean of the near and far "
                 "distance"),
+         boolean("beyond_infinity", &Options::beyond_infinity,
+                 "casters behind that camera keep their shadows, else only what reaches before it "
+                 "is drawn"),
          boolean("raise_near", &Options::raise_near,
                  "the near plane is at the nearest receiver instead of the camera's"),
          boolean("unit_cube_clipping", &Options::unit_cube_clipping,
@@ -92,8 +96,13 @@ private:
         if (is_parallel || seen.range.far_m <= seen.range.near_m)
             return is_lamp ? cube_of_world(frame, seen) : uniform(frame, seen);
         const psm::VirtualCamera camera = camera_for(frame, seen);
-        return options_.map == Map::cube || is_lamp ? cube(frame, seen, camera)
-                                                    : single(frame, seen, camera);
+        MapPlan plan = options_.map == Map::cube || is_lamp ? cube(frame, seen, camera)
+                                                            : single(frame, seen, camera);
+        if (!options_.beyond_infinity) {
+            for (PlannedLayer& layer : plan.layers)
+                layer.lost_behind_ws = camera.infinity_ws();
+        }
+        return plan;
     }
 
     psm::VirtualCamera camera_for(const Frame& frame, const Seen& seen) const {

@@ -178,6 +178,23 @@ TEST_F(MapTechniqueTest, DistancesGiveThePicturesOfDepths) {
     }
 }
 
+TEST_F(MapTechniqueTest, PsmSeesACasterBehindTheCameraBeyondInfinityOrSlidBack) {
+    const Frame frame{.scene = make_builtin_scene("field-small"),
+                      .camera = look_at({-9, 1.8f, 50}, {-8, 0.8f, 38}),
+                      .light = sun(radians(20.0f), radians(180.0f)),
+                      .size = {160, 90}};
+    const Visibility truth = trace_visibility(context(), frame, {.samples = 16});
+    const ComparisonMask mask = comparison_mask(context(), frame);
+    const auto false_lit = [&](const char* camera, bool beyond) {
+        const Params params{{"virtual_camera", camera}, {"beyond_infinity", beyond}};
+        const auto technique = make_technique(context(), "psm", params);
+        return compare(technique->render(frame), truth, mask).false_lit;
+    };
+    EXPECT_GT(false_lit("none", false), 0.2);
+    EXPECT_LT(false_lit("none", true), 0.01);
+    EXPECT_LT(false_lit("slide_back", false), 0.02);
+}
+
 // Without any bias, in any projection; and what other objects cast stays.
 TEST_F(MapTechniqueTest, ObjectIdsEndSelfShadowing) {
     Frame frame = frame_of("cube");
