@@ -12,7 +12,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import technique_pages  # noqa: E402
 
 TECHNIQUES = technique_pages.techniques(os.environ["GNOMON_CLI"])
-KINDS = ("directional", "point", "spot", "area")
+KINDS = ["directional", "point", "spot", "sphere", "disc", "rect"]
 
 
 def page(technique):
@@ -36,7 +36,7 @@ class Pages(unittest.TestCase):
     def test_pages_name_the_lights(self):
         for technique in TECHNIQUES:
             with self.subTest(technique=technique["name"]):
-                told = [kind for kind in KINDS if kind in fact(technique, "lights")]
+                told = re.findall(r"\b(?:" + "|".join(KINDS) + r")\b", fact(technique, "lights"))
                 self.assertEqual(told, technique["lights"])
 
     def test_pages_name_penumbra_and_alpha_masks(self):
