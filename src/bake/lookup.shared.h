@@ -14,6 +14,10 @@ const float kLeastSpread = 0.02f;
 // Slower edges are so nearly along the path that their slope is not known so well.
 const float kMostSlowness = 4.0f;
 
+// In codes per texel. Times are whole codes: slopes that are less are rounding, of times that are
+// all the same.
+const float kLeastSlope = 1.0f / 32.0f;
+
 // Of the light's angle to a surface that it grazes: a tenth of a degree.
 const float kLeastSine = 0.002f;
 

@@ -24,6 +24,7 @@ using glm::dvec2;
 // In double.
 const double kLeastSpread = shared::kLeastSpread;
 const double kMostSlowness = shared::kMostSlowness;
+const double kLeastSlope = shared::kLeastSlope;
 const double kLeastSine = shared::kLeastSine;
 const double kMostApart = shared::kMostApart;
 /// Of the path: shadows that pass in less, as those of wires, would make all the ground fine that
@@ -169,8 +170,12 @@ MovedEdge moved(std::span<const Times, 4> times, const BetweenTexels& between, s
         sum += between.weights[i] * time;
     }
     MovedEdge result{.time = sum / weight};
-    const dvec2 normal = between.normal_from_slope * plane.slope();
-    if (normal.x > 0.0) result.slowness = std::min(glm::length(normal) / normal.x, kMostSlowness);
+    const dvec2 slope = plane.slope();
+    if (glm::length(slope) < kLeastSlope) return result;
+    const dvec2 normal = between.normal_from_slope * slope;
+    // An edge that is nearly along the path may seem to go backwards.
+    const double length = glm::length(normal);
+    if (length > 0.0) result.slowness = std::min(length / std::abs(normal.x), kMostSlowness);
     return result;
 }
 

@@ -134,8 +134,10 @@ float part_after_edge(Between between, uint texel, uint edge, int kind, Window w
         weight += between.weights[i];
         sum += between.weights[i] * later;
     }
-    vec2 normal = window.normal_from_slope * slope_of(plane);
-    float slowness = normal.x > 0.0 ? min(length(normal) / normal.x, kMostSlowness) : 1.0;
+    vec2 slope = slope_of(plane);
+    vec2 normal = length(slope) < kLeastSlope ? vec2(0.0) : window.normal_from_slope * slope;
+    float size = length(normal);
+    float slowness = size > 0.0 ? size / max(abs(normal.x), size / kMostSlowness) : 1.0;
     return part_after(own - window.at_codes + sum / weight,
                       window.width_codes * (kEven ? 1.0 : slowness));
 }
