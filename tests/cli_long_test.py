@@ -211,6 +211,58 @@ class Bake(CliTest):
               f"path={self.light({**self.SWEEP, 'keys': self.SWEEP['keys'][:1]})}")
         self.assertEqual(self.files(), ["sweep.json"])
 
+    def test_is_rendered_at_a_time_of_its_clock(self):
+        self.bake(*self.SUN)
+        out = self.folder / "frame.png"
+
+        def render(*flags):
+            self.assert_works("render", self.folder / "day", *SMALL, *flags, "-o", out)
+            return out.read_bytes()
+        morning = render("--time", "08:00")
+        self.assertEqual(render("--time", "08:00:00.0"), morning)
+        self.assertNotEqual(render("--time", "14:30"), morning)
+        self.assertEqual(render("--time", "08:00", "--technique", "occlusion_interval_maps"), morning)
+        self.assertNotEqual(render("--time", "08:00", "--occlusion_interval_maps.lookup", "nearest"), morning)
+        # Other techniques and the truth have the bake's light.
+        for how in (("--samples", 4), ("--technique", "shadow_map")):
+            self.assertNotEqual(render("--time", "08:00", *how), render("--time", "14:30", *how))
+
+    def test_is_a_row_of_a_comparison(self):
+        self.bake(*self.SUN, "--bits", 16)
+        techniques = ("--techniques", "occlusion_interval_maps,shadow_map", "--frames", 1, "--reference-samples", 16)
+        self.assert_works("compare", self.folder / "day", "--time", "08:00", *SMALL, *techniques, "-o", self.folder / "report")
+        rows = json.loads((self.folder / "report/results.json").read_text(encoding="utf-8"))["results"]
+        baked, mapped = rows
+        self.assertEqual(baked["parameters"], {"lookup": "edges", "weight": "disc"})
+        self.assertIn("Looks up the bake", baked["note"])
+        self.assertLess(baked["error"]["rmse"], 0.1)
+        self.assertIn("map_size", mapped["parameters"])
+        told = self.assert_works("bench", self.folder / "day", "--time", "08:00", *SMALL, "--frames", 1,
+                                 "--techniques", "occlusion_interval_maps")
+        self.assertIn("occlusion_interval_maps on sun", told)
+
+    def test_times_of_bakes_and_of_others(self):
+        self.bake(*self.SUN)
+        (self.folder / "empty").mkdir()
+
+        def fails(words, scene, *flags):
+            for command, name in (("render", "frame.png"), ("compare", "report"), ("bench", None)):
+                out = ("-o", self.folder / name) if name else ()
+                self.assert_fails(INPUT, words, command, scene, *flags, *out)
+        day = self.folder / "day"
+        fails(["--time is missing", "10:30", str(day)], day)
+        fails(["03:00", "04:1", "20:1"], day, "--time", "03:00")
+        fails(["--time", '"noon"', "10:30"], day, "--time", "noon")
+        fails(["--time", "cube"], "cube", "--time", "10:30")
+        fails(["--light", "--time"], day, "--time", "10:30", "--light", "sun:elevation=30,azimuth=90")
+        fails(["--lights", "--time"], day, "--time", "10:30", "--lights", "0")
+        fails([str(self.folder / "empty"), "bake.json", "gnomon bake"], self.folder / "empty", "--time", "10:30")
+        self.assert_fails(INPUT, ["steps", "lookup, weight"], "render", day, "--time", "10:30",
+                          "--occlusion_interval_maps.steps", 20, "-o", self.folder / "frame.png")
+        (day / "page0-rise0.png").write_bytes(b"no picture")
+        self.assert_fails(INPUT, ["page0-rise0.png"], "render", day, "--time", "10:30", "-o", self.folder / "frame.png")
+        self.assertFalse([name for name in self.files() if name in ("frame.png", "report")])
+
     def test_full_disk_keeps_what_is_done(self):
         # A limit on the size of files fails as a full disk does. scene.glb has a megabyte, the times
         # of 8,000 texels a tenth of it.

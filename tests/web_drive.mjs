@@ -14,6 +14,7 @@ const { chromium } = createRequire(path.resolve(packages, "package.json"))("play
 const WIDE = { width: 1280, height: 720 };
 const PHONE = { width: 360, height: 740 };
 const GRID_PX = 16; // between the points asked for their texels
+const HORIZON_S = 30;
 const START_MS = 60000; // generous: software GL on a busy machine
 
 const browser = await chromium.launch({
@@ -86,13 +87,22 @@ const judge = async () => {
     seen.times_s.push(await setTime(part));
     await shot(name);
   }
-  seen.visibility = await page.evaluate(({ times_s }) => {
-    const { bake, view } = window.gnomon;
-    const image = (index, time_s, shift) => ({ index, time_s, shift, values: view.visibilityImage(index, time_s, shift) });
-    return bake.pages.flatMap((_, index) =>
-      [times_s[0], bake.begin_s, bake.begin_s + 120, bake.end_s].flatMap((time_s) => [image(index, time_s, 0), image(index, time_s, 0.5)]),
-    );
-  }, seen);
+  const { begin_s, end_s, closed } = await page.evaluate(() => window.gnomon.bake);
+  // Where the sun rises and sets, rounding tells whether the ground faces it.
+  const inside_s = closed ? 0 : HORIZON_S;
+  seen.visibility = [];
+  for (const time_s of [...seen.times_s, begin_s + inside_s, begin_s + 120, end_s - inside_s]) {
+    const text = await page.evaluate((time) => {
+      window.gnomon.page.setTime(time);
+      let characters = "";
+      for (const byte of window.gnomon.view.visibilityBytes()) characters += String.fromCharCode(byte);
+      return btoa(characters);
+    }, time_s);
+    const file = `visibility${seen.visibility.length}.bin`;
+    writeFileSync(path.join(folder, file), Buffer.from(text, "base64"));
+    seen.visibility.push({ time_s, file });
+  }
+  await page.evaluate((time) => window.gnomon.page.setTime(time), seen.times_s.at(-1));
 
   seen.points = await page.evaluate(({ WIDE, GRID_PX }) => {
     const points = [];

@@ -4,6 +4,7 @@
 #include "facts.h"
 #include "flags.h"
 #include "help.h"
+#include "lit_scene.h"
 #include "output.h"
 
 #include <fmt/format.h>
@@ -101,15 +102,18 @@ Json bench_json(const std::vector<BenchResult>& results, const BenchFlags& flags
 
 void run_bench(const BenchFlags& flags, const Session& session, ConsoleProgress& progress) {
     require_scene("bench", flags.view);
+    check_time("bench", flags.view);
     if (!flags.json.empty()) require_output_file("--json", flags.json, ".json");
     CompareOptions options;
     options.techniques = choose_techniques(flags.techniques, session);
     options.size = flags.view.size;
     options.ignore_alpha = flags.view.ignore_alpha;
 
-    const Scene scene = load(flags.view.scene, session, progress);
+    const LitScene lit = load_lit(flags.view, session, progress);
+    const Scene& scene = lit.scene;
+    look_up(lit.bake, options.techniques);
     options.camera = choose_camera(scene, flags.view, session);
-    options.lights = choose_lights(scene, flags.view, session);
+    options.lights = lit.lights;
     options.lights.resize(1, options.lights.front());
 
     Context context(context_options(session));

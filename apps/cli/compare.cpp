@@ -4,6 +4,7 @@
 #include "fail.h"
 #include "flags.h"
 #include "help.h"
+#include "lit_scene.h"
 #include "output.h"
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@ constexpr const char* kExamples = R"(Examples:
   gnomon compare model.glb -o report --size 640x360 --reference-samples 64
   gnomon compare model.glb -o report --techniques shadow_map,shadow_volumes \
       --shadow_map.map_size 4096 --light sun:elevation=35,azimuth=120
+  gnomon compare day -o report --time 10:30
 
 Open report/index.html in a browser; report/results.json holds the numbers. Every parameter of a
 technique is a flag; gnomon info lists them.)";
@@ -49,6 +51,7 @@ std::string explanation(const ComparisonReport& report) {
 
 void run_compare(const CompareFlags& flags, const Session& session, ConsoleProgress& progress) {
     require_scene("compare", flags.view);
+    check_time("compare", flags.view);
     if (flags.output.empty()) fail_usage("compare: -o is missing, as in -o report");
     const std::filesystem::path folder =
         require_replaced_folder("-o", flags.output, check_report_folder);
@@ -57,9 +60,11 @@ void run_compare(const CompareFlags& flags, const Session& session, ConsoleProgr
     options.size = flags.view.size;
     options.ignore_alpha = flags.view.ignore_alpha;
 
-    const Scene scene = load(flags.view.scene, session, progress);
+    const LitScene lit = load_lit(flags.view, session, progress);
+    const Scene& scene = lit.scene;
+    look_up(lit.bake, options.techniques);
     options.camera = choose_camera(scene, flags.view, session);
-    options.lights = choose_lights(scene, flags.view, session);
+    options.lights = lit.lights;
 
     Context context(context_options(session));
     const ComparisonReport report = compare_techniques(context, scene, options, progress);

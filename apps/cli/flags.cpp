@@ -179,6 +179,14 @@ void add_view(CLI::App& app, ViewFlags& flags) {
                    "which of the scene's own lights, by name or index: 0,2 (default all)")
         ->type_name("A,B|all")
         ->group(kViewGroup);
+    add_parsed(app, "--time", "HH:MM",
+               "of a bake, whose folder SCENE may be: the light is the bake's at that time of its "
+               "clock (HH:MM:SS.sss too)",
+               [&flags](const std::string& text) {
+                   parse_clock("--time", text);
+                   flags.time = text;
+               })
+        ->group(kViewGroup);
     add_ignore_alpha(app, flags);
 }
 

@@ -35,6 +35,7 @@ struct ViewFlags {
     std::string camera;               ///< empty: the scene's first
     std::vector<std::string> lights;  ///< "sun:elevation=.."; empty: the scene's own
     std::string chosen_lights;        ///< "all", or names or indices of the scene's own
+    std::string time;                 ///< "10:30", of a bake's light
     bool ignore_alpha = false;
 };
 void add_view(CLI::App& app, ViewFlags& flags);

@@ -140,6 +140,35 @@ Vec3 parse_color(std::string_view flag, std::string_view text, Range range) {
     fail_usage("{}: \"{}\" is not one number or three r,g,b", flag, text);
 }
 
+double parse_clock(std::string_view flag, std::string_view text) {
+    constexpr double kMinute_s = 60.0;
+    const std::vector<std::string_view> parts = split(text, ':');
+    const auto fail = [&] {
+        fail_usage("{}: \"{}\" is no time, as in 10:30 or 10:30:15", flag, text);
+    };
+    if (parts.size() < 2 || parts.size() > 3) fail();
+    double clock_s = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string_view part = i < parts.size() ? parts[i] : "00";
+        const bool has_digits = part.size() >= 2 && std::isdigit(part[0]) && std::isdigit(part[1]);
+        const bool has_more = part.size() > 2 && (i < 2 || part[2] != '.');
+        if (!has_digits || has_more) fail();
+        double value = 0.0;
+        const char* const end = part.data() + part.size();
+        if (std::from_chars(part.data(), end, value, std::chars_format::fixed).ptr != end) fail();
+        if (i > 0 && value >= kMinute_s) fail();
+        clock_s = kMinute_s * clock_s + value;
+    }
+    return clock_s;
+}
+
+std::string clock_text(double clock_s) {
+    constexpr long long kDay_s = 86400;
+    long long seconds = std::llround(clock_s);
+    if (seconds < 0) seconds += kDay_s;
+    return fmt::format("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
+}
+
 Extent parse_size(std::string_view flag, std::string_view text) {
     const std::vector<std::string_view> sides = split(text, 'x');
     const auto side = [](std::string_view digits) -> unsigned {

@@ -46,6 +46,13 @@ DVec3 parse_vector(std::string_view flag, std::string_view text, Range range);
 /// "x" (a grey) or "r,g,b", each within `range`.
 Vec3 parse_color(std::string_view flag, std::string_view text, Range range);
 
+/// "10:30", "10:30:15" or "10:30:15.25" in seconds since midnight; hours up to 99, for clocks that
+/// go on.
+double parse_clock(std::string_view flag, std::string_view text);
+
+/// "10:30:15"; of a time before midnight that of the day before.
+std::string clock_text(double clock_s);
+
 /// "1280x720": each side 1 to kMaxSidePx.
 Extent parse_size(std::string_view flag, std::string_view text);
 

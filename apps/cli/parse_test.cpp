@@ -73,6 +73,23 @@ TEST(Size, NamesTheRange) {
     }
 }
 
+TEST(Clock, IsHoursMinutesAndMaybeSeconds) {
+    EXPECT_EQ(parse_clock("--time", "10:30"), 37800.0);
+    EXPECT_EQ(parse_clock("--time", "00:00:07.25"), 7.25);
+    EXPECT_EQ(parse_clock("--time", "24:00:59"), 86459.0);
+    for (const char* text : {"", "10", "1:30", "10:3", "10:60", "10:30:60", "10:30:5", "10:30:15:1",
+                             "10.5:30", "-1:30", "10:30pm", "10:30:1e1", "noon"}) {
+        const std::string message = message_of([&] { parse_clock("--time", text); });
+        expect_mentions(message, {"--time", text, "10:30"});
+    }
+}
+
+TEST(Clock, IsToldInSeconds) {
+    EXPECT_EQ(clock_text(37815.4), "10:30:15");
+    EXPECT_EQ(clock_text(-60.0), "23:59:00");
+    EXPECT_EQ(clock_text(86400.0), "24:00:00");
+}
+
 TEST(Vector, HasThreeNumbers) {
     EXPECT_EQ(parse_vector("v", "1,-2,3.5", {-9, 9, ""}), DVec3(1, -2, 3.5));
     for (const char* text : {"1,2", "1,2,3,4", "1,,3", "1,2,nan", ""}) {

@@ -4,6 +4,7 @@
 #include "fail.h"
 #include "flags.h"
 #include "help.h"
+#include "lit_scene.h"
 #include "output.h"
 
 #include <filesystem>
@@ -19,10 +20,12 @@ constexpr const char* kExamples = R"(Examples:
   gnomon render model.glb -o frame.png --size 1920x1080 --samples 1024 \
       --camera eye=8,5,8,target=0,1,0,fov=45 --light sun:elevation=35,azimuth=120
   gnomon render torches -o frame.png --lights 0,3 --visibility visibility.exr
+  gnomon render day -o morning.png --time 10:30
 
-Without --technique one is chosen for the device, the light and the view (auto); with --samples the
-picture shows the ray-traced truth. Every parameter of a technique is a flag; gnomon info lists
-them.)";
+SCENE may be a folder of gnomon bake: the light is the bake's at --time, and its shadows are looked
+up in the bake (occlusion_interval_maps). Else one technique is chosen for the device, the light and
+the view (auto), unless --technique names it; with --samples the picture shows the ray-traced truth.
+Every parameter of a technique is a flag; gnomon info lists them.)";
 
 constexpr int kMaxSamples = 65536;  // TraceOptions::samples
 
@@ -43,6 +46,7 @@ std::filesystem::path visibility_path(const RenderFlags& flags, std::size_t ligh
 
 void check_flags(const RenderFlags& flags) {
     require_scene("render", flags.view);
+    check_time("render", flags.view);
     if (flags.output.empty()) fail_usage("render: -o is missing, as in -o frame.png");
     require_output_file("-o", flags.output, ".png");
     if (!flags.visibility.empty()) require_output_file("--visibility", flags.visibility, ".exr");
@@ -55,13 +59,15 @@ void check_flags(const RenderFlags& flags) {
 
 /// The technique of --technique, or auto; for the truth none.
 std::vector<TechniqueChoice> choose_technique(const RenderFlags& flags, const Session& session) {
-    const std::string name = flags.technique.empty() ? "auto" : flags.technique;
+    const std::string otherwise = names_bake(flags.view) ? "occlusion_interval_maps" : "auto";
+    const std::string name = flags.technique.empty() ? otherwise : flags.technique;
     find_technique(name);  // one, not a list or "all"
     const bool is_truth = flags.samples != 0;
     for (const ParamFlag& flag : session.param_flags) {
         if (flags.technique.empty() && (is_truth || flag.technique != name)) {
+            const std::string chosen = otherwise == "auto" ? "what auto chooses" : otherwise;
             fail_usage("{}: needs --technique {}; without it {} is rendered", flag.written,
-                       flag.technique, is_truth ? "the ray-traced truth" : "what auto chooses");
+                       flag.technique, is_truth ? "the ray-traced truth" : chosen);
         }
     }
     return is_truth ? std::vector<TechniqueChoice>() : choose_techniques(name, session);
@@ -72,7 +78,7 @@ std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::ve
                                    ConsoleProgress& progress) {
     std::unique_ptr<Technique> technique;
     if (!choice.empty()) {
-        technique = make_technique(context, choice.front().name, choice.front().params);
+        technique = make_technique(context, choice.front());
         technique->prepare(frame.scene, progress);
     }
     std::vector<Visibility> visibilities;
@@ -91,13 +97,15 @@ std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::ve
 
 void run_render(const RenderFlags& flags, const Session& session, ConsoleProgress& progress) {
     check_flags(flags);
-    const std::vector<TechniqueChoice> choice = choose_technique(flags, session);
+    std::vector<TechniqueChoice> choice = choose_technique(flags, session);
+    LitScene lit = load_lit(flags.view, session, progress);
+    look_up(lit.bake, choice);
     Frame frame;
-    frame.scene = load(flags.view.scene, session, progress);
+    frame.scene = lit.scene;
     frame.size = flags.view.size;
     frame.ignore_alpha = flags.view.ignore_alpha;
     frame.camera = choose_camera(frame.scene, flags.view, session);
-    const std::vector<Light> lights = choose_lights(frame.scene, flags.view, session);
+    const std::vector<Light>& lights = lit.lights;
 
     Context context(context_options(session));
     const std::vector<Visibility> visibilities =
@@ -132,7 +140,8 @@ Command add_render(CLI::App& program) {
                     "V.0.exr, V.1.exr")
         ->type_name("V.exr");
     app->add_option("--technique", flags->technique,
-                    "how to find the shadows (default auto, which chooses one)")
+                    "how to find the shadows (default auto, which chooses one; of a bake "
+                    "occlusion_interval_maps)")
         ->type_name("NAME");
     add_integer(*app, "--samples", flags->samples, {1, kMaxSamples, "rays"},
                 "render the ray-traced truth, with so many rays per pixel and light (one if the "

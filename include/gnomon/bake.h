@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gnomon/light.h>
 #include <gnomon/light_path.h>
 #include <gnomon/math.h>
 #include <gnomon/progress.h>
@@ -126,6 +127,14 @@ void check_bake_folder(const std::filesystem::path& folder);
 
 /// Throws Error{input} naming the file and the fault.
 IntervalBake read_bake(const std::filesystem::path& folder);
+
+/// How many steps of its path the light's disc covers, the window of interval_visibility(); at
+/// least one code, because times are no finer. A path of one step is wholly covered.
+double disc_width_steps(const BakePath& path, int codes_per_step);
+
+/// The light at a time of the path's clock, of irradiance 1. Throws Error{input} when it is not
+/// from begin_s to end_s, and for a path of no steps.
+DirectionalLight light_at(const BakePath& path, double clock_s);
 
 /// What a window that reaches beyond its path's ends finds there: what is lit or dark at an end on.
 struct PathEnds {

@@ -5,6 +5,7 @@
 #include <gnomon/technique.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,12 @@ namespace gnomon {
 struct TechniqueChoice {
     std::string name;
     Params params;
+    /// What occlusion_interval_maps looks up instead of baking; others ignore it.
+    std::shared_ptr<const IntervalBake> bake = nullptr;
 };
+
+/// Throws as those of <gnomon/technique.h> do.
+std::unique_ptr<Technique> make_technique(Context& context, const TechniqueChoice& choice);
 
 struct CompareOptions {
     std::vector<TechniqueChoice> techniques;  ///< empty = all with their defaults

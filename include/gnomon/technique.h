@@ -14,6 +14,8 @@
 
 namespace gnomon {
 
+struct IntervalBake;
+
 /// A parameter's value: a switch, a whole number, a number, or one of a list of words.
 using ParamValue = std::variant<bool, int, double, std::string>;
 
@@ -132,6 +134,23 @@ const TechniqueInfo& find_technique(std::string_view name);
 /// Without a name the one that chooses by device, light and view. Throws Error{input} for an
 /// unknown technique or parameter and for a value out of range.
 std::unique_ptr<Technique> make_technique(Context& context, std::string_view name = "auto",
+                                          const Params& params = {});
+
+/// The technique occlusion_interval_maps for a bake that is there: it looks that up and bakes
+/// nothing, for frames of the bake's scene and with lights on its path. Of its parameters `lookup`
+/// and `weight` may be set; others are the bake's. As in the page of write_web() the light covers
+/// disc_width_steps(). Texels are asked about their centres, and there are no fine cells, which
+/// files do not hold.
+///
+///     const IntervalBake bake = read_bake("day");  // <gnomon/bake.h>
+///     const auto maps = make_technique(context, bake);
+///     const Frame frame{.scene = bake.scene,
+///                       .camera = bake.scene.cameras().at(0),
+///                       .light = light_at(bake.path, 10.5 * 3600.0)};
+///     const Visibility visibility = maps->render(frame);
+///
+/// Throws Error{input} for another parameter, and naming a mesh that has no places on a page.
+std::unique_ptr<Technique> make_technique(Context& context, const IntervalBake& bake,
                                           const Params& params = {});
 
 }  // namespace gnomon

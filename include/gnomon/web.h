@@ -20,8 +20,4 @@ void write_web(const std::filesystem::path& folder, const IntervalBake& bake,
 /// To be asked before the work: whether write_web() can put its folder there. Throws as it does.
 void check_web_folder(const std::filesystem::path& folder);
 
-/// How many steps of its path the light's disc covers, the window of interval_visibility(); at
-/// least one code, because times are no finer. A path of one step is wholly covered.
-double disc_width_steps(const BakePath& path, int codes_per_step);
-
 }  // namespace gnomon

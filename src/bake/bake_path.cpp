@@ -1,5 +1,6 @@
 #include <gnomon/bake.h>
 
+#include "bake/path_place.h"
 #include "base/check.h"
 
 #include <glm/geometric.hpp>
@@ -33,11 +34,6 @@ constexpr std::size_t kLeastClosed = 4;
 /// The sine of the elevation above which the disc of the sun is up.
 constexpr double kUp = 0.005;
 
-double angle_between(DVec3 a, DVec3 b) {
-    // The sine's half is exact for small angles, where the cosine is not.
-    return 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
-}
-
 /// Half a step before the first direction, by the parabola through the first three.
 double height_before(DVec3 first, DVec3 second, DVec3 third) {
     return (15.0 * first.y - 10.0 * second.y + 3.0 * third.y) / 8.0;
@@ -58,8 +54,9 @@ PathEnds path_ends(const BakePath& path) {
     if (count < kLeastClosed || !ends.begins_up || !ends.ends_up) return ends;
     double turned_rad = 0.0;
     for (std::size_t k = 1; k < count; ++k)
-        turned_rad += angle_between(d[k - 1], d[k]);
-    ends.closed = angle_between(d[last], d[0]) <= kMostGap * turned_rad / static_cast<double>(last);
+        turned_rad += bake::angle_between(d[k - 1], d[k]);
+    ends.closed =
+        bake::angle_between(d[last], d[0]) <= kMostGap * turned_rad / static_cast<double>(last);
     return ends;
 }
 

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gnomon::bake {
 
@@ -26,25 +27,31 @@ double lagrange_weight(double at, int node, int count) {
 
 }  // namespace
 
-std::vector<DVec3> fine_path(std::span<const DVec3> to_light_ws, int parts) {
+DVec3 direction_at(std::span<const DVec3> to_light_ws, double at_step) {
     const auto steps = static_cast<int>(to_light_ws.size());
     const int count = std::min(kNodes, steps);
+    const double at = at_step - 0.5;  // of the table: middles of steps
+    const int before = static_cast<int>(std::floor(at));
+    const int first = std::clamp(before - (count / 2 - 1), 0, steps - count);
+    DVec3 sum(0.0);
+    for (int node = 0; node < count; ++node) {
+        sum += lagrange_weight(at - first, node, count) *
+               to_light_ws[static_cast<std::size_t>(first + node)];
+    }
+    // Opposite neighbours, between which no way is nearer, leave nothing.
+    const double length = glm::length(sum);
+    if (length > 0.0) return sum / length;
+    return to_light_ws[static_cast<std::size_t>(
+        std::clamp(static_cast<int>(std::floor(at_step)), 0, steps - 1))];
+}
+
+std::vector<DVec3> fine_path(std::span<const DVec3> to_light_ws, int parts) {
     std::vector<DVec3> fine;
     fine.reserve(to_light_ws.size() * static_cast<std::size_t>(parts));
-    for (int k = 0; k < steps; ++k) {
-        for (int part = 0; part < parts; ++part) {
-            const double at = k + (part + 0.5) / parts - 0.5;  // of the table: middles of steps
-            const int before = at < k ? k - 1 : k;
-            const int first = std::clamp(before - (count / 2 - 1), 0, steps - count);
-            DVec3 sum(0.0);
-            for (int node = 0; node < count; ++node) {
-                sum += lagrange_weight(at - first, node, count) *
-                       to_light_ws[static_cast<std::size_t>(first + node)];
-            }
-            // Opposite neighbours, between which no way is nearer, leave nothing.
-            const double length = glm::length(sum);
-            fine.push_back(length > 0.0 ? sum / length : to_light_ws[static_cast<std::size_t>(k)]);
-        }
+    for (std::size_t k = 0; k < to_light_ws.size(); ++k) {
+        for (int part = 0; part < parts; ++part)
+            fine.push_back(
+                direction_at(to_light_ws, static_cast<double>(k) + (part + 0.5) / parts));
     }
     return fine;
 }

@@ -4,7 +4,9 @@
 // What look-ups in double and on the device agree upon.
 
 #ifdef __cplusplus
+#include <cstdint>
 namespace gnomon::bake::shared {
+using uint = std::uint32_t;
 #endif
 
 // Of places, whose spread along one axis times that across it, as part of the square of their sum,
@@ -28,6 +30,11 @@ const float kMostApart = 1.0f / 16.0f;
 // Of a texel: parts in which it tells where it asks. Others are up to 3.5 texels away: padding,
 // burial, half.
 const int kPlaceCodes = 32;
+
+// PathEnds as bits.
+const uint kClosed = 1u;
+const uint kBeginsUp = 2u;
+const uint kEndsUp = 4u;
 
 #ifdef __cplusplus
 }  // namespace gnomon::bake::shared

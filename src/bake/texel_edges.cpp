@@ -37,7 +37,7 @@ constexpr std::size_t kNone = kMostIntervals;
 struct Times {
     std::array<float, kMostIntervals> values;
     std::size_t count = 0;
-    std::size_t end = kNone;  ///< the one that is no edge but the end of a closed path
+    std::size_t end = kNone;  ///< the one that is no edge but the path's end; see PathEnds
 
     void add(float time) {
         assert(count < kMostIntervals);
@@ -78,14 +78,30 @@ Edges edges_of(const IntervalPage& page, std::size_t texel) {
     return edges;
 }
 
-/// The same on a closed path: what is lit at both of its ends goes on over them.
-Edges closed_edges_of(const IntervalPage& page, std::size_t texel, double path_codes) {
+/// The same of a path that goes on beyond its ends: what is lit at both ends of a closed one goes
+/// on over them, and what is lit at an end that is up goes on to be.
+Edges edges_of(const IntervalPage& page, std::size_t texel, double path_codes,
+               const PathEnds& ends) {
+    constexpr auto kAlways = std::numeric_limits<float>::max();
     Edges edges = edges_of(page, texel);
     const std::size_t count = edges.rises.count;
-    if (count == 0 || edges.rises.values[0] > 0.0f) return edges;
-    if (static_cast<double>(edges.falls.values[count - 1]) < path_codes) return edges;
-    edges.rises.end = 0;
-    edges.falls.end = count - 1;
+    if (count == 0) return edges;
+    const bool begins = edges.rises.values[0] == 0.0f;
+    const bool lasts = static_cast<double>(edges.falls.values[count - 1]) >= path_codes;
+    if (ends.closed) {
+        if (!begins || !lasts) return edges;
+        edges.rises.end = 0;
+        edges.falls.end = count - 1;
+        return edges;
+    }
+    if (ends.begins_up && begins) {
+        edges.rises.end = 0;
+        edges.rises.values[0] = -kAlways;
+    }
+    if (ends.ends_up && lasts) {
+        edges.falls.end = count - 1;
+        edges.falls.values[count - 1] = kAlways;
+    }
     return edges;
 }
 
@@ -229,9 +245,7 @@ double edges_visibility(const IntervalPage& page, const BetweenTexels& between,
     std::array<Times, 4> rises;
     std::array<Times, 4> falls;
     for (std::size_t i = 0; i < between.texels.size(); ++i) {
-        const Edges edges = window.ends.closed
-                                ? closed_edges_of(page, between.texels[i], between.path_codes)
-                                : edges_of(page, between.texels[i]);
+        const Edges edges = edges_of(page, between.texels[i], between.path_codes, window.ends);
         rises[i] = edges.rises;
         falls[i] = edges.falls;
     }

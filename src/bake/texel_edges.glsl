@@ -20,7 +20,7 @@ struct Window {
     float at_codes;
     float width_codes;
     float path_codes;
-    bool closed;             // see PathEnds
+    uint ends;               // of PathEnds, as bits
     mat2 normal_from_slope;  // see bake::normal_from_slope()
 };
 
@@ -51,11 +51,17 @@ float part_after(float ahead_codes, float width_codes) {
     return 0.5 - (x * half_chord + atan(x, half_chord)) / kPi;
 }
 
-// Whether it is no edge but the end of a closed path, over which the texel goes on to be lit.
+bool has_end(Window window, uint end) {
+    return (window.ends & end) != 0u;
+}
+
+// Whether it is no edge but the path's end, over which the texel goes on to be lit.
 bool is_path_end(Times times, uint number, int kind, Window window) {
-    if (!window.closed || number != (kind == kRise ? 0u : times.count - 1u)) return false;
-    return time_of(times, 0u, kRise) == 0.0 &&
-           time_of(times, times.count - 1u, kFall) == window.path_codes;
+    if (number != (kind == kRise ? 0u : times.count - 1u)) return false;
+    bool begins = time_of(times, 0u, kRise) == 0.0;
+    bool lasts = time_of(times, times.count - 1u, kFall) == window.path_codes;
+    if (has_end(window, kClosed)) return begins && lasts;
+    return kind == kRise ? begins && has_end(window, kBeginsUp) : lasts && has_end(window, kEndsUp);
 }
 
 // The number of the edge of `others` that is the same as edge `edge` of `times`, or kNoEdge.
@@ -119,8 +125,10 @@ vec2 slope_of(Plane plane) {
 // The part of the window that comes after an edge of a texel, once that has been moved.
 float part_after_edge(Between between, uint texel, uint edge, int kind, Window window) {
     float own = time_of(between.times[texel], edge, kind);
-    if (is_path_end(between.times[texel], edge, kind, window))
-        return part_after(own - window.at_codes, window.width_codes);
+    if (is_path_end(between.times[texel], edge, kind, window)) {
+        if (has_end(window, kClosed)) return part_after(own - window.at_codes, window.width_codes);
+        return kind == kRise ? 1.0 : 0.0;
+    }
     Plane plane = Plane(0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
     float weight = 0.0;
     float sum = 0.0;
@@ -169,7 +177,7 @@ float part_seen(Between between, Window window) {
 float edges_visibility(Between between, Window window) {
     float seen = part_seen(between, window);
     // A window of a closed path is also one path before or after its place.
-    if (window.closed && min(window.at_codes, window.path_codes - window.at_codes) < reach_of(window)) {
+    if (has_end(window, kClosed) && min(window.at_codes, window.path_codes - window.at_codes) < reach_of(window)) {
         window.at_codes +=
             window.at_codes < 0.5 * window.path_codes ? window.path_codes : -window.path_codes;
         seen += part_seen(between, window);

@@ -19,21 +19,6 @@ constexpr double kOffFacet_texels = 0.01;
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// The linear map that takes a face's corners on the map to those in the world.
-Facet facet_of(const Face& face, const Corners& c) {
-    const dvec2 a = c[1] - c[0];
-    const dvec2 b = c[2] - c[0];
-    const DVec3 a_ws = face.corners_ws[1] - face.corners_ws[0];
-    const DVec3 b_ws = face.corners_ws[2] - face.corners_ws[0];
-    const double determinant = a.x * b.y - a.y * b.x;
-    Facet facet;
-    facet.u_ws = (b.y * a_ws - a.y * b_ws) / determinant;
-    facet.v_ws = (a.x * b_ws - b.x * a_ws) / determinant;
-    facet.origin_ws = face.corners_ws[0] - c[0].x * facet.u_ws - c[0].y * facet.v_ws;
-    facet.normal_ws = face.normal_ws;
-    return facet;
-}
-
 class Unwrapper {
 public:
     Unwrapper(const Scene& scene, std::uint32_t instance, int set, const Options& options)
@@ -204,6 +189,20 @@ private:
 };
 
 }  // namespace
+
+Facet facet_of(const Face& face, const Corners& c) {
+    const dvec2 a = c[1] - c[0];
+    const dvec2 b = c[2] - c[0];
+    const DVec3 a_ws = face.corners_ws[1] - face.corners_ws[0];
+    const DVec3 b_ws = face.corners_ws[2] - face.corners_ws[0];
+    const double determinant = a.x * b.y - a.y * b.x;
+    Facet facet;
+    facet.u_ws = (b.y * a_ws - a.y * b_ws) / determinant;
+    facet.v_ws = (a.x * b_ws - b.x * a_ws) / determinant;
+    facet.origin_ws = face.corners_ws[0] - c[0].x * facet.u_ws - c[0].y * facet.v_ws;
+    facet.normal_ws = face.normal_ws;
+    return facet;
+}
 
 double max_chart_m(const Options& options) {
     return (options.max_page_texels - options.padding_texels) * options.texel_size_m;

@@ -2,6 +2,7 @@
 
 #include "lightmap/atlas.h"
 #include "lightmap/charts.h"
+#include "lightmap/surface.h"
 
 #include <cstdint>
 #include <vector>
@@ -27,6 +28,9 @@ struct Unwrapped {
 /// Throws Error{input} when a triangle is larger than a page.
 Unwrapped unwrap(const Scene& scene, std::uint32_t instance, int texcoord_set,
                  const Options& options);
+
+/// The linear map that takes a face's corners on the map to those in the world.
+Facet facet_of(const Face& face, const Corners& corners_texels);
 
 /// The greatest side of a chart, so that it fits a page with its padding.
 double max_chart_m(const Options& options);

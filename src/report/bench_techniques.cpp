@@ -20,7 +20,7 @@ BenchResult bench(Context& context, const Frame& frame, const TechniqueChoice& c
     result.supported = result.note.empty();
     if (!result.supported) return result;
 
-    const auto technique = make_technique(context, choice.name, choice.params);
+    const auto technique = make_technique(context, choice);
     result.prepare_ms = time_prepare(*technique, frame.scene, progress);
     Visibility visibility;
     Timing timing = time_renders(*technique, frame, kWarmUpFrames, frames, "timing " + choice.name,

@@ -33,7 +33,7 @@ TEST(ChosenTechniques, ThrowForMisspellingsBeforeAnyWork) {
 }
 
 TEST(AllParameters, FillInDefaultsAndKeepOneSpelling) {
-    const auto all = all_parameters(kSunny, {{"map-size", 1024}});
+    const auto all = all_parameters(kSunny, {.name = "sunny", .params = {{"map-size", 1024}}});
     ASSERT_EQ(all.size(), 2u);
     EXPECT_EQ(all.at("map_size"), ParamValue(1024));
     EXPECT_EQ(all.at("bias"), ParamValue(0.5));

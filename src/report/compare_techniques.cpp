@@ -1,3 +1,4 @@
+#include <gnomon/bake.h>
 #include <gnomon/report.h>
 
 #include "base/check.h"
@@ -84,7 +85,7 @@ TechniqueResult blank_result(const TechniqueInfo& info, const TechniqueChoice& c
     result.title = info.title;
     result.light = truth.light;
     result.light_kind = truth.light_kind;
-    result.parameters = all_parameters(info, choice.params);
+    result.parameters = all_parameters(info, choice);
     return result;
 }
 
@@ -123,14 +124,17 @@ void run_technique(Context& context, const TechniqueChoice& choice, std::span<co
         result.supported = result.note.empty();
         if (result.supported) {
             if (!technique) {
-                technique = make_technique(context, choice.name, choice.params);
+                technique = make_technique(context, choice);
                 prepare_ms = time_prepare(*technique, cases[i].frame.scene, progress);
             }
             result.note = supported_note(info, cases[i].frame);
             result.prepare_ms = prepare_ms;
             judge(context, report.options, cases[i], report.truths[i], *technique, progress,
                   result);
-            const std::string chosen = technique->last_render().note;
+            const std::string chosen =
+                looks_up_bake(choice)
+                    ? fmt::format("Looks up the bake: {}.", choice.bake->path.summary)
+                    : technique->last_render().note;
             if (!chosen.empty()) result.note += (result.note.empty() ? "" : " ") + chosen;
         }
         report.results.push_back(std::move(result));

@@ -1,6 +1,7 @@
 #include "report/timing.h"
 
 #include "base/parallel.h"
+#include "technique/stored_bake.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -122,11 +123,18 @@ std::vector<TechniqueChoice> chosen_techniques(const CompareOptions& options) {
     return chosen;
 }
 
-std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info, const Params& chosen) {
+bool looks_up_bake(const TechniqueChoice& choice) {
+    return choice.bake && choice.name == kBakeTechnique;
+}
+
+std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info,
+                                                 const TechniqueChoice& chosen) {
     std::map<std::string, ParamValue> all;
-    for (const ParamInfo& param : info.params())
+    for (const ParamInfo& param : info.params()) {
+        if (looks_up_bake(chosen) && std::ranges::count(kLookupParams, param.name) == 0) continue;
         all[param.name] = param.default_value;
-    for (const auto& [name, value] : chosen.values()) {
+    }
+    for (const auto& [name, value] : chosen.params.values()) {
         all[find_param(info.name, info.params(), name).name] = value;
     }
     return all;
@@ -141,3 +149,12 @@ std::string unsupported_note(const TechniqueInfo& info, const Light& light) {
 }
 
 }  // namespace gnomon::report
+
+namespace gnomon {
+
+std::unique_ptr<Technique> make_technique(Context& context, const TechniqueChoice& choice) {
+    if (report::looks_up_bake(choice)) return make_technique(context, *choice.bake, choice.params);
+    return make_technique(context, choice.name, choice.params);
+}
+
+}  // namespace gnomon

@@ -37,8 +37,12 @@ double time_prepare(Technique& technique, const Scene& scene, Progress& progress
 /// parameter, before any work is done.
 std::vector<TechniqueChoice> chosen_techniques(const CompareOptions& options);
 
-/// Every parameter of the technique: as chosen, else its default.
-std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info, const Params& chosen);
+/// Every parameter of the technique that counts: as chosen, else its default.
+std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info,
+                                                 const TechniqueChoice& chosen);
+
+/// Whether it looks up a bake that is there.
+bool looks_up_bake(const TechniqueChoice& choice);
 
 /// Why the technique cannot shadow the light, naming those that it can; empty when it can.
 std::string unsupported_note(const TechniqueInfo& info, const Light& light);

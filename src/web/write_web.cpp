@@ -6,12 +6,10 @@
 #include "base/folder.h"
 #include "web/page_files.h"
 
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -113,20 +111,6 @@ FolderKind web_kind() {
 }
 
 }  // namespace
-
-double disc_width_steps(const BakePath& path, int codes_per_step) {
-    const double code_steps = 1.0 / codes_per_step;
-    if (path.steps() < 2) return 1.0;
-    double turned_rad = 0.0;
-    for (std::size_t k = 1; k < path.to_light_ws.size(); ++k) {
-        // The sine's half is exact for small angles, where the cosine is not.
-        turned_rad += 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(path.to_light_ws[k] -
-                                                                      path.to_light_ws[k - 1])));
-    }
-    const double step_rad = turned_rad / (path.steps() - 1);
-    if (!(step_rad > 0.0)) return code_steps;
-    return std::max(code_steps, path.angular_diameter_rad / step_rad);
-}
 
 void check_web_folder(const fs::path& folder) {
     if (web::page_files().empty()) {

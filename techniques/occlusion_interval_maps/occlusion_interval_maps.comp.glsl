@@ -79,15 +79,24 @@ vec2 asks_at(LitTexel texel) {
            float(kPlaceCodes);
 }
 
+// The part of a window at `at` that comes after a time of a texel; one at an end of the path that is
+// up is before, or after, all windows.
+float part_after_time(Times times, uint number, int kind, float at) {
+    float time = time_of(times, number, kind);
+    if ((push.ends & kClosed) == 0u) {
+        if (kind == kRise && time == 0.0 && (push.ends & kBeginsUp) != 0u) return 1.0;
+        if (kind == kFall && time == push.path_codes && (push.ends & kEndsUp) != 0u) return 0.0;
+    }
+    return part_after(time - at, push.width_codes);
+}
+
 float seen_by(uint texel) {
     Times times = times_of(texels[texel]);
     float at = push.at_codes;
     float seen = 0.0;
-    for (uint place = 0u; place <= push.closed; ++place) {
-        for (uint i = 0u; i < times.count; ++i) {
-            seen += part_after(time_of(times, i, kRise) - at, push.width_codes) -
-                    part_after(time_of(times, i, kFall) - at, push.width_codes);
-        }
+    for (uint place = 0u; place <= (push.ends & kClosed); ++place) {
+        for (uint i = 0u; i < times.count; ++i)
+            seen += part_after_time(times, i, kRise, at) - part_after_time(times, i, kFall, at);
         at += at < 0.5 * push.path_codes ? push.path_codes : -push.path_codes;
     }
     return clamp(seen, 0.0, 1.0);
@@ -161,7 +170,7 @@ float by_edges(PageFacet facet, PageChart chart, vec2 place) {
     between.weights = float[4]((1.0 - down) * (1.0 - upper), (1.0 - down) * upper,
                                down * (1.0 - lower), down * lower);
     return edges_visibility(between, Window(push.at_codes, push.width_codes, push.path_codes,
-                                            push.closed != 0u, normal_from_slope(facet)));
+                                            push.ends, normal_from_slope(facet)));
 }
 
 float visibility_at(uvec2 pixel) {

@@ -9,11 +9,18 @@
 
 #include "bake/baked_texels.h"
 #include "bake/circle_path.h"
+#include "bake/lookup.shared.h"
+#include "bake/path_place.h"
+#include "bake/stored_texels.h"
+#include "base/check.h"
 #include "device_texels.h"
 #include "lightmap/surface.h"
 #include "occlusion_interval_maps.comp.spv.h"
 #include "technique/param_table.h"
+#include "technique/stored_bake.h"
 #include "technique/technique_base.h"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,6 +93,12 @@ double lit_area_m2(const Scene& scene, const BakePath& path) {
     return area_m2;
 }
 
+std::uint32_t bits_of(const PathEnds& ends) {
+    return (ends.closed ? bake::shared::kClosed : 0u) |
+           (ends.begins_up ? bake::shared::kBeginsUp : 0u) |
+           (ends.ends_up ? bake::shared::kEndsUp : 0u);
+}
+
 gpu::Pipeline lookup_pipeline(const gpu::Device& device, const Options& options) {
     using enum gpu::BindingType;
     return gpu::Pipeline(
@@ -106,8 +119,20 @@ public:
           options_(options),
           lookup_(lookup_pipeline(context.impl().device(), options)) {}
 
+    /// For a bake that is there.
+    OcclusionIntervalMaps(Context& context, const Options& options, const IntervalBake& bake)
+        : OcclusionIntervalMaps(context, options) {
+        stored_ = bake.scene;
+        options_.bits = bake.bits == BakeBits::eight ? TimeBits::eight : TimeBits::sixteen;
+        baked_ = std::make_unique<Baked>();
+        baked_->through = {.path = bake.path,
+                           .steps_per_rad = bake::steps_per_rad(bake.path),
+                           .ends = path_ends(bake.path)};
+        upload(bake.scene, bake::stored_texels(bake), *baked_);
+    }
+
 private:
-    /// What is baked, for lights on one circle.
+    /// What is baked, for lights on one path.
     struct Baked {
         bake::PathThrough through;
         bool ignore_alpha = false;
@@ -118,7 +143,9 @@ private:
     };
 
     void prepare_scene(const Scene& scene, Progress& progress) override {
+        if (stored_) require_baked(scene);
         GpuTechnique::prepare_scene(scene, progress);
+        if (stored_) return;
         baked_ = nullptr;
         for (const Light& light : scene.lights()) {
             if (const auto* sun = std::get_if<DirectionalLight>(&light)) {
@@ -128,10 +155,48 @@ private:
         }
     }
 
+    void require_baked(const Scene& scene) const {
+        if (same(scene.identity(), stored_->identity())) return;
+        fail_input(
+            "occlusion_interval_maps: frame.scene is \"{}\"; it must be the bake's own, \"{}\"",
+            scene.source(), stored_->source());
+    }
+
     void prepare_light(const Frame& frame, Progress& progress) override {
         const auto& sun = std::get<DirectionalLight>(frame.light);
+        if (stored_) {
+            at_ = stored_place(sun);
+            return;
+        }
         if (!is_baked_for(sun, frame.ignore_alpha))
             bake_for(frame.scene, sun, frame.ignore_alpha, progress);
+        at_ = circle_place(sun);
+    }
+
+    bake::PathPlace stored_place(const DirectionalLight& sun) const {
+        const std::optional<bake::PathPlace> place =
+            bake::place_on(baked_->through.path, DVec3(sun.to_light_ws), kOnCircle_rad);
+        if (place) return *place;
+        const Vec3 to = sun.to_light_ws;
+        fail_input(
+            "occlusion_interval_maps: light \"{}\": to_light_ws is {}, {}, {}, which is not on the "
+            "bake's path; light_at() gives what is",
+            sun.name, to.x, to.y, to.z);
+    }
+
+    bake::PathPlace circle_place(const DirectionalLight& sun) const {
+        const DVec3 to_light = glm::normalize(DVec3(sun.to_light_ws));
+        bake::PathPlace place{.at_step = bake::step_on(baked_->through, to_light, kOnCircle_rad)};
+        const DVec3 along = glm::cross(baked_->through.path.pole_ws, to_light);
+        if (glm::length(along) > 0.0) place.along_ws = glm::normalize(along);
+        return place;
+    }
+
+    /// Times of a stored bake are no finer than a code, and its light no narrower.
+    double width_steps(const DirectionalLight& sun) const {
+        const auto diameter_rad = static_cast<double>(sun.angular_diameter_rad);
+        if (!stored_) return diameter_rad * baked_->through.steps_per_rad;
+        return bake::disc_width_steps(baked_->through.path, diameter_rad, codes_per_step(bits()));
     }
 
     int steps() const {
@@ -191,25 +256,19 @@ private:
         const auto& sun = std::get<DirectionalLight>(frame.light);
         const DVec3 to_light = glm::normalize(DVec3(sun.to_light_ws));
         const double codes = codes_per_step(bits());
-        shared::LookupPush push{
-            .es_from_clip = receivers.eye_from_clip(),
-            .eye_ws = receivers.camera.eye_ws(),
-            .along_ws = Vec3(0.0f),
-            .across_ws = Vec3(0.0f),
-            .at_codes =
-                static_cast<float>(codes * bake::step_on(baked_->through, to_light, kOnCircle_rad)),
-            .width_codes =
-                static_cast<float>(codes * static_cast<double>(sun.angular_diameter_rad) *
-                                   baked_->through.steps_per_rad),
-            .path_codes = static_cast<float>(baked_->path_codes),
-            .closed = baked_->through.ends.closed ? 1u : 0u,
-            .fine_parts = static_cast<std::uint32_t>(baked_->fine_parts),
-            .size = {receivers.size.width, receivers.size.height}};
-        const DVec3 along = glm::cross(baked_->through.path.pole_ws, to_light);
-        if (glm::length(along) > 0.0) {  // else it stands still, and has neither
-            push.along_ws = Vec3(glm::normalize(along));
-            push.across_ws = Vec3(glm::cross(to_light, glm::normalize(along)));
-        }
+        shared::LookupPush push{.es_from_clip = receivers.eye_from_clip(),
+                                .eye_ws = receivers.camera.eye_ws(),
+                                .along_ws = Vec3(0.0f),
+                                .across_ws = Vec3(0.0f),
+                                .at_codes = static_cast<float>(codes * at_.at_step),
+                                .width_codes = static_cast<float>(codes * width_steps(sun)),
+                                .path_codes = static_cast<float>(baked_->path_codes),
+                                .ends = bits_of(baked_->through.ends),
+                                .fine_parts = static_cast<std::uint32_t>(baked_->fine_parts),
+                                .size = {receivers.size.width, receivers.size.height}};
+        // A light that stands still has neither.
+        push.along_ws = Vec3(at_.along_ws);
+        push.across_ws = Vec3(glm::cross(to_light, at_.along_ws));
         return push;
     }
 
@@ -248,13 +307,15 @@ private:
     Options options_;
     gpu::Pipeline lookup_;
     std::unique_ptr<Baked> baked_;
+    std::optional<Scene> stored_;  ///< of a bake that is there, which is never made anew
+    bake::PathPlace at_;           ///< of the frame's light
 };
 
 }  // namespace
 
 const TechniqueInfo& occlusion_interval_maps_info() {
     static const TechniqueInfo info{
-        .name = "occlusion_interval_maps",
+        .name = kBakeTechnique,
         .title = "Occlusion interval maps",
         .source = "donnelly2004",
         .lights = LightKinds::directional,
@@ -264,6 +325,18 @@ const TechniqueInfo& occlusion_interval_maps_info() {
             return std::make_unique<OcclusionIntervalMaps>(context, param_table().options(params));
         }};
     return info;
+}
+
+std::unique_ptr<Technique> make_technique(Context& context, const IntervalBake& bake,
+                                          const Params& params) {
+    const std::string_view technique = occlusion_interval_maps_info().name;
+    for (const auto& [name, value] : params.values()) {
+        const ParamInfo& info = find_param(technique, param_table().infos(), name);
+        if (std::ranges::count(kLookupParams, info.name) > 0) continue;
+        fail_input("{}: {}: is the bake's own; of one that is there these can be set: {}",
+                   technique, info.name, fmt::join(kLookupParams, ", "));
+    }
+    return std::make_unique<OcclusionIntervalMaps>(context, param_table().options(params), bake);
 }
 
 }  // namespace gnomon

@@ -53,7 +53,7 @@ struct LookupPush {
     float at_codes;  // of the light's middle, on the path
     float width_codes;
     float path_codes;
-    uint closed;  // PathEnds::closed
+    uint ends;  // PathEnds as bits
     uint fine_parts;
     uvec2 size;
 };

@@ -34,11 +34,12 @@ export const codeSeconds = (bake) =>
 export const stepAt = (bake, time_s) =>
   ((time_s - bake.begin_s) / (bake.end_s - bake.begin_s)) * steps(bake);
 
-// Towards the light; step k's direction is that of its middle, k + 0.5.
+// Towards the light; step k's direction is that of its middle, k + 0.5. Beyond the first and the last
+// middle it goes on as it came.
 export const toLightAt = (bake, time_s) => {
   const last = steps(bake) - 1;
-  const at = Math.min(Math.max(stepAt(bake, time_s) - 0.5, 0), last);
-  const first = Math.min(Math.floor(at), Math.max(last - 1, 0));
+  const at = stepAt(bake, time_s) - 0.5;
+  const first = Math.min(Math.max(Math.floor(at), 0), Math.max(last - 1, 0));
   const [a, b] = [bake.to_light_ws[first], bake.to_light_ws[Math.min(first + 1, last)]];
   const mixed = a.map((value, i) => value + (at - first) * (b[i] - value));
   const length = Math.hypot(...mixed);

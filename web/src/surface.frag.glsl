@@ -9,6 +9,7 @@ const int kHours = 1;
 const int kTexel = 2;  // x and y of the texel, each a low and a high byte
 const int kPage = 3;   // the page + 1
 const int kDepth = 4;  // of the window, in 24 bits
+const int kVisibility = 5;  // in 16 bits
 
 uniform int mode;
 uniform vec4 base_color;  // linear
@@ -32,12 +33,15 @@ const float kLowSine = 0.26;
 const vec3 kSky = vec3(0.36, 0.41, 0.48);
 const vec3 kGround = vec3(0.23, 0.21, 0.19);
 
+// Of the sun; a surface that is turned away sees none of it.
+float seen(vec3 normal) {
+    return dot(normal, to_sun_ws) > 0.0 ? smooth_visibility(page_uv) : 0.0;
+}
+
 vec3 lit(vec3 albedo, vec3 normal) {
     vec3 sky = mix(kGround, kSky, 0.5 + 0.5 * normal.y);
-    float cosine = max(dot(normal, to_sun_ws), 0.0);
-    float seen = cosine > 0.0 ? smooth_visibility(page_uv) : 0.0;
     vec3 sun = mix(kLowSun, kHighSun, smoothstep(0.0, kLowSine, to_sun_ws.y));
-    return albedo * (sky + sun * cosine * seen);
+    return albedo * (sky + sun * dot(normal, to_sun_ws) * seen(normal));
 }
 
 // Little shading, so that edges show and colours stay those of the legend.
@@ -67,6 +71,8 @@ void main() {
         gl_FragColor = vec4(bytes(texel.x), bytes(texel.y));
     } else if (mode == kPage) {
         gl_FragColor = vec4(bytes(int(page) + 1), 0.0, 1.0);
+    } else if (mode == kVisibility) {
+        gl_FragColor = vec4(bytes(int(seen(normal) * 65535.0 + 0.5)), 0.0, 1.0);
     } else {
         int depth = int(gl_FragCoord.z * 16777215.0);
         gl_FragColor = vec4(bytes(depth), bytes(depth >> 16));

@@ -7,7 +7,7 @@ import fragmentGlsl from "./surface.frag.glsl";
 import vertexGlsl from "./surface.vert.glsl";
 import visibilityGlsl from "./visibility.glsl";
 
-export const MODE = { lit: 0, hours: 1, texel: 2, page: 3, depth: 4 };
+export const MODE = { lit: 0, hours: 1, texel: 2, page: 3, depth: 4, visibility: 5 };
 
 // A page as a texture of whole numbers; the shader fetches its texels by their indices.
 export const pageTexture = (page, bits) => {
@@ -33,8 +33,6 @@ export const sharedUniforms = () => ({
   to_sun_ws: { value: new THREE.Vector3(0, 1, 0) },
 });
 
-export const visibilityShader = (page) => `#define PAIRS ${page.pairs}\n${visibilityGlsl}`;
-
 // `material`: as GLTFLoader makes it.
 export const surfaceMaterial = (material, page, shared) => {
   const map = material.map ?? null;
@@ -55,7 +53,7 @@ export const surfaceMaterial = (material, page, shared) => {
       map_from_uv: { value: map ? map.matrix : new THREE.Matrix3() },
     },
     vertexShader: vertexGlsl,
-    fragmentShader: `${visibilityShader(page)}${falseColorGlsl}${fragmentGlsl}`,
+    fragmentShader: `#define PAIRS ${page.pairs}\n${visibilityGlsl}${falseColorGlsl}${fragmentGlsl}`,
     side: material.side,
   });
 };

@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import { steps, stepAt, toLightAt, codeSeconds } from "./bake_data.js";
-import { MODE, pageTexture, sharedUniforms, surfaceMaterial, visibilityShader } from "./surface.js";
+import { MODE, pageTexture, sharedUniforms, surfaceMaterial } from "./surface.js";
 
 const FIELD_DEG = 45; // of the picture's height
 const NARROWEST = 1.2; // width / height below which the field grows, so that the model stays in sight
@@ -200,34 +200,20 @@ export class View {
     return { x: 0.5 * (1 + p.x) * this.canvas.clientWidth, y: 0.5 * (1 - p.y) * this.canvas.clientHeight };
   }
 
-  // The shader's visibility of every texel of a page at a time, rows from the top: for tests. With a
-  // shift of 0.5 texels each value lies in the middle of four texels.
-  visibilityImage(index, time_s, shift_texels = 0) {
-    this.setTime(time_s);
-    const page = this.pages[index];
-    const target = new THREE.WebGLRenderTarget(page.side, page.side);
-    const material = new THREE.ShaderMaterial({
-      uniforms: { ...this.shared, intervals: { value: page.texture }, shift: { value: shift_texels } },
-      vertexShader: "void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }",
-      fragmentShader: `precision highp float;
-        ${visibilityShader(page)}
-        uniform float shift;
-        void main() {
-          vec2 at = (gl_FragCoord.xy + shift) / float(textureSize(intervals, 0).x);
-          float seen = smooth_visibility(at);
-          int number = int(seen * 65535.0 + 0.5);
-          gl_FragColor = vec4(vec2(number & 255, number >> 8) / 255.0, 0.0, 1.0);
-        }`,
-    });
-    const quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), material);
-    quad.frustumCulled = false;
+  // What the shader sees of the sun at each pixel of the canvas, rows from the bottom, four bytes: of
+  // 65535 parts the low and the high byte, 0, and 0 where nothing is drawn. For tests.
+  visibilityBytes() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const target = new THREE.WebGLRenderTarget(width, height);
+    const bytes = new Uint8Array(4 * width * height);
+    this.shared.mode.value = MODE.visibility;
     this.renderer.setRenderTarget(target);
-    this.renderer.render(quad, this.camera);
-    const bytes = new Uint8Array(4 * page.side ** 2);
-    this.renderer.readRenderTargetPixels(target, 0, 0, page.side, page.side, bytes);
+    this.renderer.setClearColor(0x000000, 0);
+    this.renderer.render(this.scene, this.camera);
+    this.renderer.readRenderTargetPixels(target, 0, 0, width, height, bytes);
     this.renderer.setRenderTarget(null);
     target.dispose();
-    material.dispose();
-    return Array.from({ length: page.side ** 2 }, (_, i) => (bytes[4 * i] + 256 * bytes[4 * i + 1]) / 65535);
+    this.stale = true;
+    return bytes;
   }
 }
