@@ -10,9 +10,9 @@
 
 #include <gnomon/image.h>
 #include <gnomon/scene.h>
+#include <gnomon/vertex_lighting.h>
 
 #include "bench_main.h"
-#include "lighting/averaged_light.h"
 #include "raster/small_scene_test.h"
 
 #include <fmt/format.h>
@@ -24,9 +24,6 @@
 
 namespace gnomon {
 namespace {
-
-using lighting::Lit;
-using lighting::VertexLight;
 
 constexpr float kHalf_m = 1.6f;  ///< of the square's side
 constexpr float kBox_m = 0.25f;  ///< half of the box's side, between two vertices
@@ -59,29 +56,30 @@ Scene square_with_box() {
 }
 
 /// Points of the ground in rows, the first at z = -kHalf_m; `inset`: 0 at its border, or 0.5.
-std::vector<trace::Receiver> ground_points(unsigned count, float inset) {
-    std::vector<trace::Receiver> points;
+std::vector<SurfacePoint> ground_points(unsigned count, float inset) {
+    std::vector<SurfacePoint> points;
     const float step_m = 2.0f * kHalf_m / (static_cast<float>(count) - 1.0f + 2.0f * inset);
     for (unsigned y = 0; y < count; ++y) {
         for (unsigned x = 0; x < count; ++x) {
             const float x_m = (static_cast<float>(x) + inset) * step_m - kHalf_m;
             const float z_m = (static_cast<float>(y) + inset) * step_m - kHalf_m;
-            points.push_back({{x_m, 0.0f, z_m}, kUp, {0, 0}});
+            points.push_back({{x_m, 0.0f, z_m}, kUp});
         }
     }
     return points;
 }
 
+using Lights = std::vector<StrongVertexLight>;
+
 /// The lamps as each point sees them.
-std::vector<std::vector<Lit>> lights_at(const trace::Tracer& tracer,
-                                        const std::vector<trace::Receiver>& points) {
+std::vector<Lights> lights_at(const Scene& scene, const std::vector<SurfacePoint>& points) {
     Progress silent;
-    std::vector<std::vector<Lit>> lights(points.size());
-    for (const PointLight& lamp : kLamps) {
-        const std::vector<VertexLight> baked =
-            lighting::bake_vertex_lights(tracer, points, lamp, 1, 1, silent);
+    const std::vector<Light> lamps(std::begin(kLamps), std::end(kLamps));
+    const auto traced = trace_vertex_lights(scene, points, lamps, 1, silent);
+    std::vector<Lights> lights(points.size());
+    for (std::size_t l = 0; l < lamps.size(); ++l) {
         for (std::size_t i = 0; i < points.size(); ++i)
-            lights[i].push_back({baked[i], lamp.intensity});
+            lights[i].push_back({traced[l][i], light_strength(lamps[l])});
     }
     return lights;
 }
@@ -137,17 +135,16 @@ double rmse_to_first(const Image& picture, unsigned panel) {
 
 int run(int argc, char** argv) {
     const std::filesystem::path file = argc > 1 ? argv[1] : "bump_light.png";
-    constexpr lighting::TangentFrame kFrame{
+    constexpr TangentFrame kFrame{
         .tangent_ws = {1, 0, 0}, .bitangent_ws = {0, 0, 1}, .normal_ws = kUp};
-    Progress silent;
-    const trace::Tracer tracer(square_with_box(), false, silent);
+    const Scene scene = square_with_box();
     std::vector<Vec3> colours, averages_ts;
-    for (const std::vector<Lit>& lights : lights_at(tracer, ground_points(kVertices, 0.0f))) {
-        colours.push_back(lighting::vertex_irradiance(lights, kUp));
-        averages_ts.push_back(lighting::averaged_light_ts(lights, kFrame, kFullLuminance));
+    for (const Lights& lights : lights_at(scene, ground_points(kVertices, 0.0f))) {
+        colours.push_back(vertex_irradiance(lights, kUp));
+        averages_ts.push_back(averaged_light_ts(lights, kFrame, kFullLuminance));
     }
-    const std::vector<trace::Receiver> pixels = ground_points(kPanel_px, 0.5f);
-    const std::vector<std::vector<Lit>> seen = lights_at(tracer, pixels);
+    const std::vector<SurfacePoint> pixels = ground_points(kPanel_px, 0.5f);
+    const std::vector<Lights> seen = lights_at(scene, pixels);
     Image picture({3 * kPanel_px, kPanel_px}, 3);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const Vec3 p_ws = pixels[i].position_ws;
@@ -155,9 +152,9 @@ int run(int argc, char** argv) {
         const Vec3 bump = bump_ts(p_ws);
         const Vec3 colour = between_vertices(colours, p_ws);
         const Vec3 average_ts = normalize(between_vertices(averages_ts, p_ws));
-        put(picture, 0, i, lighting::vertex_irradiance(seen[i], Vec3(bump.x, bump.z, bump.y)));
+        put(picture, 0, i, vertex_irradiance(seen[i], Vec3(bump.x, bump.z, bump.y)));
         put(picture, 1, i, colour);
-        put(picture, 2, i, colour * lighting::bump_factor(average_ts, bump));
+        put(picture, 2, i, colour * bump_factor(average_ts, bump));
     }
     write_png(file, picture);
     fmt::print("RMSE: vertices {:.3f}, with averaged light {:.3f}\n", rmse_to_first(picture, 1),

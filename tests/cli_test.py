@@ -266,6 +266,28 @@ class Output(CliTest):
 
 
 class Work(CliTest):
+    def test_light_by_vertices(self):
+        out = self.folder / "frame.png"
+
+        def render(*flags):
+            return self.assert_works("render", "torches", *SMALL, "--lights", "0,3", *flags, "-o", out), out.read_bytes()
+        coarse = ("--vertex_occlusion.tessellate", 1)
+        told, vertex = render("--lighting", "vertex", *coarse)
+        self.assertIn("vertices, cut edges of 1 m or less", told)
+        self.assertNotEqual(render("--lighting", "vertex_flat", *coarse)[1], vertex)
+        self.assertNotEqual(render("--lighting", "pixel")[1], vertex)
+
+    def test_what_light_by_vertices_is_not_for(self):
+        out = self.folder / "frame.png"
+        for flag, value in (("--technique", "pssm"), ("--samples", 4), ("--visibility", self.folder / "v.exr"),
+                            ("--compose", "subtractive"), ("--vertex_occlusion.walls", "false")):
+            self.assert_fails(INPUT, [flag, "--lighting vertex"], "render", "cube", "--lighting", "vertex", flag, value,
+                              "-o", out)
+        self.assert_fails(INPUT, ["--pssm.splits", "vertex_occlusion"], "render", "cube", "--lighting", "vertex",
+                          "--pssm.splits", 2, "-o", out)
+        self.assert_fails(INPUT, ["--lighting", '"vertices"', "vertex_flat"], "render", "cube", "--lighting", "vertices", "-o", out)
+        self.assertEqual(self.files(), [])
+
     def test_render(self):
         picture, visibility = self.folder / "x.png", self.folder / "v.exr"
         told = self.assert_works("render", "cube", "-o", picture, "--visibility", visibility,

@@ -51,7 +51,7 @@ PUBLIC = {
     "web": "web",
     "visibility": "visibility",
     "technique": "technique",
-    "lighting": "lighting",
+    "lighting": "lighting", "vertex_lighting": "lighting",
     "report": "report",
     "gnomon": "report",
     "vulkan": "technique",

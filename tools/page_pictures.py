@@ -127,6 +127,8 @@ PICTURES = {
     "vertex_occlusion-walls": ("1280x720", (620, 440, 860, 560), 3, ["courtyard"] + [
         f"courtyard {VERTEX} --vertex_occlusion.tessellate 0.3 --vertex_occlusion.walls {walls}"
         for walls in ("false", "true")]),
+    "vertex_occlusion-averaged": ("1280x720", (0, 130, 440, 510), 3, ["torches"] + [
+        f"torches --lighting {lighting} --vertex_occlusion.tessellate 0.3" for lighting in ("vertex_flat", "vertex")]),
     "auto": ("1280x720", (0, 450, 420, 650), 3, [
         "gas-station", f"gas-station {AUTO_GPU}", "gas-station --technique pssm"]),
     "auto-fails": ("1920x1080", (1000, 500, 1360, 640), 3, [
@@ -201,7 +203,7 @@ def main():
                 continue
             panels = []
             for command in commands:
-                truth = [] if "--technique" in command else ["--samples", "256"]
+                truth = [] if "--technique" in command or "--lighting" in command else ["--samples", "256"]
                 gnomon("render", *command.split(), *truth, "-o", frame, "--size", size)
                 panels.append(cropped(frame, crop))
             save(name, panels, columns)

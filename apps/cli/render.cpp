@@ -1,4 +1,5 @@
 #include <gnomon/lighting.h>
+#include <gnomon/vertex_lighting.h>
 
 #include "command.h"
 #include "fail.h"
@@ -34,7 +35,12 @@ struct RenderFlags {
     LightingOptions lighting;
     std::string output, visibility, technique;
     int samples = 0;  ///< 0 = not given
+    std::string shading = "pixel";
 };
+
+constexpr std::string_view kShadings[] = {"pixel", "vertex", "vertex_flat"};
+/// Whose parameters say how vertices are traced.
+constexpr const char* kVertexTechnique = "vertex_occlusion";
 
 /// visibility.exr for one light; visibility.0.exr, visibility.1.exr for several.
 std::filesystem::path visibility_path(const RenderFlags& flags, std::size_t light,
@@ -55,6 +61,29 @@ void check_flags(const RenderFlags& flags) {
             "--samples is for the ray-traced truth; with --technique ray_traced use "
             "--ray_traced.samples");
     }
+}
+
+/// Of --lighting vertex: how the technique's parameters would have it.
+VertexLightingOptions vertex_options(const RenderFlags& flags, const Session& session) {
+    constexpr std::uint64_t kThousand = 1000;
+    const auto fail = [&](std::string_view flag) {
+        fail_usage("{}: is not for --lighting {}, which has light for vertices, not visibility",
+                   flag, flags.shading);
+    };
+    if (!flags.technique.empty()) fail("--technique");
+    if (!flags.visibility.empty()) fail("--visibility");
+    if (flags.samples != 0) fail("--samples");
+    if (flags.lighting.compose == Compose::subtractive) fail("--compose subtractive");
+    VertexLightingOptions options{.ignore_alpha = flags.view.ignore_alpha};
+    const TechniqueChoice choice = choose_techniques(kVertexTechnique, session).front();
+    for (const auto& [name, value] : choice.params.values()) {
+        if (name == "tessellate") options.edge_m = std::get<double>(value);
+        if (name == "samples") options.samples = std::get<int>(value);
+        if (name == "vertices")
+            options.most_vertices = kThousand * static_cast<std::uint64_t>(std::get<int>(value));
+        if (name == "walls") fail("--vertex_occlusion.walls");
+    }
+    return options;
 }
 
 /// The technique of --technique, or auto; for the truth none.
@@ -95,9 +124,38 @@ std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::ve
     return visibilities;
 }
 
+void write_visibilities(const RenderFlags& flags, const std::vector<Light>& lights,
+                        const std::vector<Visibility>& visibilities) {
+    for (std::size_t i = 0; i < lights.size() && !flags.visibility.empty(); ++i) {
+        const std::filesystem::path path = visibility_path(flags, i, lights.size());
+        write_exr(path, visibilities[i].image());
+        print(fmt::format("visibility of {}: {}\n", light_name(lights[i]), path.string()));
+    }
+}
+
+Image vertex_picture(Context& context, const Frame& frame, const std::vector<Light>& lights,
+                     const RenderFlags& flags, const VertexLightingOptions& options,
+                     ConsoleProgress& progress) {
+    const VertexLighting vertices(frame.scene, lights, options, progress);
+    const Image picture = vertex_lit_picture(
+        context, frame, vertices, lights, flags.lighting,
+        flags.shading == "vertex_flat" ? VertexShading::flat : VertexShading::averaged);
+    progress.clear();
+    print(fmt::format("{} vertices, cut edges of {:.2g} m or less\n", vertices.vertices(),
+                      vertices.edge_m()));
+    return picture;
+}
+
 void run_render(const RenderFlags& flags, const Session& session, ConsoleProgress& progress) {
     check_flags(flags);
-    std::vector<TechniqueChoice> choice = choose_technique(flags, session);
+    const bool by_pixel = flags.shading == kShadings[0];
+    VertexLightingOptions vertices;
+    std::vector<TechniqueChoice> choice;
+    if (by_pixel) {
+        choice = choose_technique(flags, session);
+    } else {
+        vertices = vertex_options(flags, session);
+    }
     LitScene lit = load_lit(flags.view, session, progress);
     look_up(lit.bake, choice);
     Frame frame;
@@ -105,26 +163,26 @@ void run_render(const RenderFlags& flags, const Session& session, ConsoleProgres
     frame.size = flags.view.size;
     frame.ignore_alpha = flags.view.ignore_alpha;
     frame.camera = choose_camera(frame.scene, flags.view, session);
-    const std::vector<Light>& lights = lit.lights;
 
     Context context(context_options(session));
-    const std::vector<Visibility> visibilities =
-        see_lights(context, frame, lights, choice, flags.samples, progress);
-    std::vector<LitBy> lit_by;
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        lit_by.push_back({lights[i], &visibilities[i]});
-    const Image picture = light_picture(context, frame, lit_by, flags.lighting);
+    std::vector<Visibility> visibilities;
+    Image picture;
+    if (by_pixel) {
+        visibilities = see_lights(context, frame, lit.lights, choice, flags.samples, progress);
+        std::vector<LitBy> lit_by;
+        for (std::size_t i = 0; i < lit.lights.size(); ++i)
+            lit_by.push_back({lit.lights[i], &visibilities[i]});
+        picture = light_picture(context, frame, lit_by, flags.lighting);
+    } else {
+        picture = vertex_picture(context, frame, lit.lights, flags, vertices, progress);
+    }
     progress.check();
     progress.clear();
     check_validation(context);
 
     write_png(flags.output, picture);
     print(fmt::format("picture: {}\n", flags.output));
-    for (std::size_t i = 0; i < lights.size() && !flags.visibility.empty(); ++i) {
-        const std::filesystem::path path = visibility_path(flags, i, lights.size());
-        write_exr(path, visibilities[i].image());
-        print(fmt::format("visibility of {}: {}\n", light_name(lights[i]), path.string()));
-    }
+    write_visibilities(flags, lit.lights, visibilities);
 }
 
 }  // namespace
@@ -146,6 +204,14 @@ Command add_render(CLI::App& program) {
     add_integer(*app, "--samples", flags->samples, {1, kMaxSamples, "rays"},
                 "render the ray-traced truth, with so many rays per pixel and light (one if the "
                 "light has no extent)");
+    add_parsed(*app, "--lighting", "pixel|vertex|vertex_flat",
+               "pixel: each pixel's light by the visibility there (default); vertex: light traced "
+               "at vertices, with averaged L for normals between them; vertex_flat: without that. "
+               "--vertex_occlusion.tessellate, vertices and samples say which vertices",
+               [flags](const std::string& text) {
+                   flags->shading = parse_word("--lighting", text, kShadings);
+               })
+        ->group("Picture");
     add_view(*app, flags->view);
     add_lighting(*app, flags->lighting);
     return {app,

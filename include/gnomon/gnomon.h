@@ -17,5 +17,6 @@
 #include <gnomon/sun.h>
 #include <gnomon/sun_hours.h>
 #include <gnomon/technique.h>
+#include <gnomon/vertex_lighting.h>
 #include <gnomon/visibility.h>
 #include <gnomon/web.h>

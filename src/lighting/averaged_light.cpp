@@ -9,13 +9,16 @@
 
 #include "lighting/averaged_light.h"
 
+#include <gnomon/vertex_lighting.h>
+
+#include "base/check.h"
 #include "base/parallel.h"
 #include "trace/light_sample.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace gnomon::lighting {
+namespace gnomon {
 
 namespace {
 
@@ -63,6 +66,22 @@ struct Attenuation {
     }
 };
 
+struct ToStrength {
+    Vec3 operator()(const DirectionalLight& light) const { return light.irradiance; }
+    Vec3 operator()(const PointLight& light) const { return light.intensity; }
+    Vec3 operator()(const SpotLight& light) const { return light.intensity; }
+    Vec3 operator()(const SphereLight& light) const {
+        return light.radiance * (kPi * light.radius_m * light.radius_m);
+    }
+    Vec3 operator()(const DiscLight& light) const {
+        return light.radiance * (kPi * light.radius_m * light.radius_m);
+    }
+    Vec3 operator()(const RectLight& light) const {
+        return light.radiance *
+               (4.0f * glm::length(light.half_u_ws) * glm::length(light.half_v_ws));
+    }
+};
+
 Vec3 unit_or_zero(Vec3 v) {
     const float length = glm::length(v);
     return length > 0.0f ? v / length : Vec3(0.0f);
@@ -93,20 +112,22 @@ VertexLight bake_vertex(const trace::Tracer& tracer, const Receiver& vertex, con
         towards += weights[i] * normalize(rays[i].direction_ws);
     }
     if (!(seen > 0.0f)) return {};
-    return {unit_or_zero(towards), seen / all * attenuation(light, vertex.position_ws)};
+    return {unit_or_zero(towards), seen / all * light_attenuation(light, vertex.position_ws)};
 }
 
-float luminance(const Lit& lit) {
-    return glm::dot(kLuminance, lit.strength) * lit.light.share;
+float luminance(const StrongVertexLight& lit) {
+    return lighting::luminance(lit.strength) * lit.light.share;
 }
 
 }  // namespace
 
-float attenuation(const Light& light, Vec3 p_ws) {
+float light_attenuation(const Light& light, Vec3 p_ws) {
     return std::visit(Attenuation{p_ws}, light);
 }
 
-std::vector<VertexLight> bake_vertex_lights(const trace::Tracer& tracer,
+namespace lighting {
+
+std::vector<VertexLight> trace_vertex_light(const trace::Tracer& tracer,
                                             std::span<const Receiver> vertices, const Light& light,
                                             int samples, unsigned seed, Progress& progress) {
     std::vector<VertexLight> lights(vertices.size());
@@ -128,36 +149,71 @@ std::vector<VertexLight> bake_vertex_lights(const trace::Tracer& tracer,
     return lights;
 }
 
-float reach_m(Vec3 greatest_intensity, float least_irradiance) {
+float luminance(Vec3 linear_rgb) {
+    return glm::dot(kLuminance, linear_rgb);
+}
+
+void check_samples(int samples) {
+    constexpr int kMostSamples = 65536;
+    if (samples < 1 || samples > kMostSamples)
+        fail_input("vertex lighting: samples is {}; it must be 1 to {}", samples, kMostSamples);
+}
+
+}  // namespace lighting
+
+std::vector<std::vector<VertexLight>> trace_vertex_lights(const Scene& scene,
+                                                          std::span<const SurfacePoint> points,
+                                                          std::span<const Light> lights,
+                                                          int samples, Progress& progress) {
+    lighting::check_samples(samples);
+    for (const Light& light : lights)
+        validate(light);
+    const trace::Tracer tracer(scene, false, progress);
+    std::vector<Receiver> vertices;
+    for (const SurfacePoint& point : points)
+        vertices.push_back({point.position_ws, point.normal_ws, {trace::kNoSurface, 0}});
+    std::vector<std::vector<VertexLight>> result;
+    for (const Light& light : lights) {
+        result.push_back(lighting::trace_vertex_light(tracer, vertices, light, samples,
+                                                      lighting::kVertexSeed, progress));
+    }
+    return result;
+}
+
+Vec3 light_strength(const Light& light) {
+    return std::visit(ToStrength{}, light);
+}
+
+float light_reach_m(Vec3 greatest_intensity, float least_irradiance) {
     const float greatest =
         std::max({greatest_intensity.x, greatest_intensity.y, greatest_intensity.z});
     return std::sqrt(greatest / least_irradiance);
 }
 
-Vec3 vertex_irradiance(std::span<const Lit> lights, Vec3 normal_ws) {
+Vec3 vertex_irradiance(std::span<const StrongVertexLight> lights, Vec3 normal_ws) {
     Vec3 irradiance(0.0f);
-    for (const Lit& lit : lights) {
+    for (const StrongVertexLight& lit : lights) {
         const float cosine = std::max(0.0f, glm::dot(normal_ws, lit.light.to_light_ws));
         irradiance += lit.strength * (lit.light.share * cosine);
     }
     return irradiance;
 }
 
-Vec3 averaged_light_ts(std::span<const Lit> lights, const TangentFrame& frame,
+Vec3 averaged_light_ts(std::span<const StrongVertexLight> lights, const TangentFrame& frame,
                        float full_luminance) {
     Vec3 sum_ws(0.0f);
-    for (const Lit& lit : lights)
+    for (const StrongVertexLight& lit : lights)
         sum_ws += luminance(lit) / full_luminance * lit.light.to_light_ws;
     const Vec3 sum_ts(glm::dot(frame.tangent_ws, sum_ws), glm::dot(frame.bitangent_ws, sum_ws),
                       glm::dot(frame.normal_ws, sum_ws));
     // Lights that a vertex sees are above its face, so that the sum has no negative height but by
     // a normal that is not the face's.
-    return normalize(Vec3(sum_ts.x, sum_ts.y, std::max(sum_ts.z, 0.0f) + kUpwardBias));
+    return normalize(Vec3(sum_ts.x, sum_ts.y, std::max(sum_ts.z, 0.0f) + kAveragedLightBias));
 }
 
 float bump_factor(Vec3 averaged_ts, Vec3 bump_ts) {
     const float bumped = std::max(0.0f, glm::dot(bump_ts, averaged_ts));
-    return std::min(bumped / averaged_ts.z, kMostExaggeration);
+    return std::min(bumped / averaged_ts.z, kMostBumpFactor);
 }
 
-}  // namespace gnomon::lighting
+}  // namespace gnomon

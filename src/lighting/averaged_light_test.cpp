@@ -11,7 +11,7 @@ namespace {
 constexpr Vec3 kUp{0, 0, 1};
 
 /// A white light of that irradiance where it arrives, from a unit vector.
-Lit lit(Vec3 to_light_ws, float irradiance) {
+StrongVertexLight lit(Vec3 to_light_ws, float irradiance) {
     return {{to_light_ws, 1.0f}, Vec3(irradiance)};
 }
 
@@ -20,14 +20,14 @@ float degrees_between(Vec3 a, Vec3 b) {
 }
 
 TEST(AveragedLight, OppositeLightsGiveNoZeroButStraightUp) {
-    const std::vector<Lit> lights{lit({1, 0, 0}, 1.0f), lit({-1, 0, 0}, 1.0f)};
+    const std::vector<StrongVertexLight> lights{lit({1, 0, 0}, 1.0f), lit({-1, 0, 0}, 1.0f)};
     EXPECT_LT(degrees_between(averaged_light_ts(lights, {}, 1.0f), kUp), 0.1f);
     EXPECT_EQ(averaged_light_ts({}, {}, 1.0f), kUp);
 }
 
 TEST(AveragedLight, TheStrongestLightDominates) {
     const Vec3 strong = normalize(Vec3(1, 0, 1)), weak = normalize(Vec3(-1, 0, 1));
-    const std::vector<Lit> lights{lit(strong, 1.0f), lit(weak, 0.1f)};
+    const std::vector<StrongVertexLight> lights{lit(strong, 1.0f), lit(weak, 0.1f)};
     const Vec3 average = averaged_light_ts(lights, {}, 1.0f);
     EXPECT_LT(degrees_between(average, strong), 12.0f);
     EXPECT_GT(degrees_between(average, weak), 75.0f);
@@ -38,7 +38,7 @@ TEST(AveragedLight, FollowsALightThatIsTurnedOn) {
     const Vec3 rising = normalize(Vec3(1, 0, 1));
     float last_deg = degrees_between(kUp, rising);
     for (int step = 1; step <= 100; ++step) {
-        const std::vector<Lit> lights{lit(rising, 0.01f * static_cast<float>(step))};
+        const std::vector<StrongVertexLight> lights{lit(rising, 0.01f * static_cast<float>(step))};
         const float off_deg = degrees_between(averaged_light_ts(lights, {}, 1.0f), rising);
         EXPECT_LT(off_deg, last_deg);
         EXPECT_GT(off_deg, last_deg - 5.0f);
@@ -51,7 +51,7 @@ TEST(AveragedLight, FollowsALightThatIsTurnedOn) {
 TEST(AveragedLight, IsInTheSpaceOfTheTangents) {
     const TangentFrame wall{
         .tangent_ws = {0, 0, -1}, .bitangent_ws = {0, 1, 0}, .normal_ws = {1, 0, 0}};
-    const std::vector<Lit> lights{lit({0, 1, 0}, 1000.0f)};
+    const std::vector<StrongVertexLight> lights{lit({0, 1, 0}, 1000.0f)};
     const Vec3 average = averaged_light_ts(lights, wall, 1.0f);
     EXPECT_NEAR(average.y, 1.0f, 1e-4f);
     EXPECT_GT(average.z, 0.0f);
@@ -64,13 +64,13 @@ TEST(AveragedLight, FlatSurfacesKeepTheirColour) {
     EXPECT_GT(bump_factor(average, normalize(Vec3(0.3f, 0.1f, 1))), 1.0f);
     EXPECT_LT(bump_factor(average, normalize(Vec3(-0.3f, -0.1f, 1))), 1.0f);
     EXPECT_EQ(bump_factor(average, normalize(Vec3(-1, -0.3f, 0.2f))), 0.0f);
-    EXPECT_EQ(bump_factor(normalize(Vec3(1, 0, 0.01f)), {1, 0, 0}), kMostExaggeration);
+    EXPECT_EQ(bump_factor(normalize(Vec3(1, 0, 0.01f)), {1, 0, 0}), kMostBumpFactor);
 }
 
 TEST(AveragedLight, IrradianceAddsUpByStrengthShareAndCosine) {
-    const std::vector<Lit> lights{{{kUp, 0.5f}, {4, 0, 0}},
-                                  {{normalize(Vec3(1, 0, 1)), 0.25f}, {0, 8, 0}},
-                                  {{{0, 0, -1}, 1.0f}, {0, 0, 9}}};
+    const std::vector<StrongVertexLight> lights{{{kUp, 0.5f}, {4, 0, 0}},
+                                                {{normalize(Vec3(1, 0, 1)), 0.25f}, {0, 8, 0}},
+                                                {{{0, 0, -1}, 1.0f}, {0, 0, 9}}};
     const Vec3 sum = vertex_irradiance(lights, kUp);
     EXPECT_FLOAT_EQ(sum.x, 2.0f);
     EXPECT_FLOAT_EQ(sum.y, std::sqrt(2.0f));
@@ -79,24 +79,25 @@ TEST(AveragedLight, IrradianceAddsUpByStrengthShareAndCosine) {
 
 TEST(AveragedLight, LightsReachAsFarAsTheirGreatestIntensity) {
     const Vec3 greatest(25, 100, 4);
-    const float reach = reach_m(greatest, 0.25f);
+    const float reach = light_reach_m(greatest, 0.25f);
     EXPECT_FLOAT_EQ(reach, 20.0f);
     const PointLight light{.intensity = greatest};
-    EXPECT_FLOAT_EQ(attenuation(light, {0, reach, 0}) * greatest.y, 0.25f);
+    EXPECT_FLOAT_EQ(light_attenuation(light, {0, reach, 0}) * greatest.y, 0.25f);
 }
 
 TEST(AveragedLight, AttenuationIsThatOfTheLightsKind) {
     const Vec3 below(0, -2, 0), beside(2, 0, 0);
-    EXPECT_EQ(attenuation(DirectionalLight{}, below), 1.0f);
-    EXPECT_FLOAT_EQ(attenuation(SphereLight{}, below), 0.25f);
-    EXPECT_FLOAT_EQ(attenuation(DiscLight{}, below), 0.25f);
-    EXPECT_EQ(attenuation(DiscLight{}, beside), 0.0f);
-    EXPECT_FLOAT_EQ(attenuation(DiscLight{}, {2, -2, 0}), 0.125f * std::sqrt(0.5f));
+    EXPECT_EQ(light_attenuation(DirectionalLight{}, below), 1.0f);
+    EXPECT_FLOAT_EQ(light_attenuation(SphereLight{}, below), 0.25f);
+    EXPECT_FLOAT_EQ(light_attenuation(DiscLight{}, below), 0.25f);
+    EXPECT_EQ(light_attenuation(DiscLight{}, beside), 0.0f);
+    EXPECT_FLOAT_EQ(light_attenuation(DiscLight{}, {2, -2, 0}), 0.125f * std::sqrt(0.5f));
     EXPECT_FLOAT_EQ(
-        attenuation(RectLight{.half_u_ws = {1, 0, 0}, .half_v_ws = {0, 0, 1}}, {0, 2, 0}), 0.0f)
+        light_attenuation(RectLight{.half_u_ws = {1, 0, 0}, .half_v_ws = {0, 0, 1}}, {0, 2, 0}),
+        0.0f)
         << "cross(u, v) points down";
-    EXPECT_FLOAT_EQ(attenuation(SpotLight{}, below), 0.25f);
-    EXPECT_EQ(attenuation(SpotLight{}, beside), 0.0f);
+    EXPECT_FLOAT_EQ(light_attenuation(SpotLight{}, below), 0.25f);
+    EXPECT_EQ(light_attenuation(SpotLight{}, beside), 0.0f);
 }
 
 /// A roof at y = 1 over the half of the ground where x < 0.
@@ -126,7 +127,7 @@ TEST(AveragedLight, PointsToWhatIsSeenOfALight) {
     const std::vector<trace::Receiver> vertices{on_ground(0.0f), on_ground(-5.0f), on_ground(5.0f)};
     constexpr int kSamples = 1024;
     const std::vector<VertexLight> lights =
-        bake_vertex_lights(tracer, vertices, light, kSamples, 1, silent);
+        trace_vertex_light(tracer, vertices, light, kSamples, 1, silent);
     // A row of 32 strata is cut by the edge: each errs by a variance of 1/4 at most.
     const double error = 4.0 * std::sqrt(32.0 / 4.0) / kSamples;
     EXPECT_NEAR(lights[0].share * kHeight_m * kHeight_m, 0.5, error);
@@ -134,7 +135,7 @@ TEST(AveragedLight, PointsToWhatIsSeenOfALight) {
     EXPECT_NEAR(glm::length(lights[0].to_light_ws), 1.0f, 1e-5f);
     EXPECT_EQ(lights[1].share, 0.0f);
     EXPECT_EQ(lights[1].to_light_ws, Vec3(0.0f));
-    EXPECT_FLOAT_EQ(lights[2].share, attenuation(light, vertices[2].position_ws));
+    EXPECT_FLOAT_EQ(lights[2].share, light_attenuation(light, vertices[2].position_ws));
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include <gnomon/lighting.h>
+#include <gnomon/vertex_lighting.h>
 
 #include "base/check.h"
 #include "compose.comp.spv.h"
 #include "lighting/exposure.h"
 #include "lighting/lighting.shared.h"
+#include "lighting/vertex_lights.h"
 #include "shade.comp.spv.h"
+#include "shade_vertices.comp.spv.h"
 #include "visibility/light_shape.h"
 #include "visibility/visibility_impl.h"
 
@@ -19,22 +22,6 @@ namespace {
 
 constexpr unsigned kGroupSize = 8;
 
-struct ToStrength {
-    Vec3 operator()(const DirectionalLight& light) const { return light.irradiance; }
-    Vec3 operator()(const PointLight& light) const { return light.intensity; }
-    Vec3 operator()(const SpotLight& light) const { return light.intensity; }
-    Vec3 operator()(const SphereLight& light) const {
-        return light.radiance * (kPi * light.radius_m * light.radius_m);
-    }
-    Vec3 operator()(const DiscLight& light) const {
-        return light.radiance * (kPi * light.radius_m * light.radius_m);
-    }
-    Vec3 operator()(const RectLight& light) const {
-        return light.radiance *
-               (4.0f * glm::length(light.half_u_ws) * glm::length(light.half_v_ws));
-    }
-};
-
 shared::ShadeFrame shade_frame(const raster::Receivers& receivers, const Light& light, bool first) {
     const Camera& camera = receivers.camera;
     const bool perspective = camera.ortho_height_m == 0.0f;
@@ -43,7 +30,7 @@ shared::ShadeFrame shade_frame(const raster::Receivers& receivers, const Light& 
                              .eye_ws = Vec3(perspective ? world_from_view[3] : world_from_view[2]),
                              .perspective = perspective ? 1.0f : 0.0f,
                              .light = light_shape(light),
-                             .strength = std::visit(ToStrength{}, light),
+                             .strength = light_strength(light),
                              .spot_axis = Vec3(0.0f),
                              .spot_scale = 0.0f,
                              .spot_offset = 1.0f,
@@ -101,6 +88,31 @@ public:
         for (std::size_t i = 0; i < lights.size(); ++i) {
             record_light(commands, lights[i].light, *seen[i], i == 0);
         }
+        context_.submission().submit_and_wait();
+    }
+
+    /// Instead of what lights shaded, but as bright as these were.
+    void shade_vertices(std::span<const shared::VertexShade> shades, bool averaged) {
+        const gpu::Device& device = context_.device();
+        using enum gpu::BindingType;
+        const gpu::Pipeline pipeline(
+            device,
+            {.code = shaders::shade_vertices_comp,
+             .layout = {{texture, storage_image, texture, texture, storage_image, storage_buffer},
+                        sizeof(shared::VertexPush)}});
+        gpu::Buffer buffer = gpu::make_buffer(device, shades, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        gpu::Commands commands = context_.submission().begin();
+        commands.use(buffer, gpu::Use::storage_read);
+        commands.use(lit_, gpu::Use::storage_write);
+        commands.bind(pipeline, {gpu::Texture{receivers_->device.depth.view(), &nearest_},
+                                 gpu::StorageImage{receivers_->device.normals.view()},
+                                 gpu::Texture{surfaces_.albedo.view(), &nearest_},
+                                 gpu::Texture{surfaces_.normal_gloss.view(), &nearest_},
+                                 gpu::StorageImage{lit_.view()}, gpu::StorageBuffer{&buffer}});
+        commands.push(pipeline,
+                      shared::VertexPush{.size = {frame_.size.width, frame_.size.height},
+                                         .most_factor = averaged ? kMostBumpFactor : 0.0f});
+        commands.dispatch(frame_.size, kGroupSize);
         context_.submission().submit_and_wait();
     }
 
@@ -174,6 +186,39 @@ private:
     gpu::Image lit_, full_, picture_;
 };
 
+void check(const LightingOptions& options) {
+    if (!std::isfinite(options.exposure) || options.exposure < 0.0f) {
+        fail_input("light_picture: exposure is {}; it must be 0 (automatic) or above",
+                   options.exposure);
+    }
+    for (const float ambient : {options.ambient.x, options.ambient.y, options.ambient.z}) {
+        if (std::isfinite(ambient)) continue;
+        fail_input("light_picture: ambient is {}; it must be finite", ambient);
+    }
+}
+
+/// Of one value everywhere.
+Visibility even_visibility(Context& context, Extent size, float value) {
+    Visibility even;
+    for (float& v : even.impl().host_target(context.impl(), size).pixels())
+        v = value;
+    return even;
+}
+
+Image composed(Painter& painter, const LightingOptions& options) {
+    const lighting::LightLevel level = lighting::measure(painter.read_full());
+    const Vec3 ambient =
+        options.ambient.x < 0.0f ? lighting::default_ambient(level) : options.ambient;
+    const float exposure =
+        options.exposure > 0.0f ? options.exposure : lighting::default_exposure(level, ambient);
+    return painter.compose(options, ambient, exposure);
+}
+
+/// Ambient light alone has a light that is dark, too.
+Light no_light() {
+    return DirectionalLight{.irradiance = Vec3(0.0f)};
+}
+
 }  // namespace
 
 Image light_picture(Context& context, const Frame& frame, std::span<const LitBy> lights,
@@ -185,31 +230,43 @@ Image light_picture(Context& context, const Frame& frame, std::span<const LitBy>
                        light_name(lit.light), frame.size.width, frame.size.height);
         }
     }
-    if (!std::isfinite(options.exposure) || options.exposure < 0.0f) {
-        fail_input("light_picture: exposure is {}; it must be 0 (automatic) or above",
-                   options.exposure);
-    }
-    for (const float ambient : {options.ambient.x, options.ambient.y, options.ambient.z}) {
-        if (std::isfinite(ambient)) continue;
-        fail_input("light_picture: ambient is {}; it must be finite", ambient);
-    }
-    Visibility all;
+    check(options);
+    const Visibility none = even_visibility(context, frame.size, 0.0f);
     std::vector<LitBy> shaded(lights.begin(), lights.end());
-    if (shaded.empty()) {  // ambient only
-        for (float& v : all.impl().host_target(context.impl(), frame.size).pixels())
-            v = 0.0f;
-        DirectionalLight dark;
-        dark.irradiance = Vec3(0.0f);
-        shaded.push_back({dark, &all});
-    }
+    if (shaded.empty()) shaded.push_back({no_light(), &none});
     Painter painter(context.impl(), frame);
     painter.shade(shaded);
-    const lighting::LightLevel level = lighting::measure(painter.read_full());
-    const Vec3 ambient =
-        options.ambient.x < 0.0f ? lighting::default_ambient(level) : options.ambient;
-    const float exposure =
-        options.exposure > 0.0f ? options.exposure : lighting::default_exposure(level, ambient);
-    return painter.compose(options, ambient, exposure);
+    return composed(painter, options);
+}
+
+Image vertex_lit_picture(Context& context, const Frame& frame, const VertexLighting& lighting,
+                         std::span<const Light> lights, const LightingOptions& options,
+                         VertexShading shading) {
+    frame.validate();
+    check(options);
+    if (options.compose == Compose::subtractive) {
+        fail_input(
+            "vertex_lit_picture: compose is subtractive, which darkens by visibility; vertices "
+            "keep "
+            "light: take additive");
+    }
+    if (!same(frame.scene.identity(), lighting.impl().scene().identity())) {
+        fail_input("vertex_lit_picture: frame.scene is \"{}\"; vertices were traced in \"{}\"",
+                   frame.scene.source(), lighting.impl().scene().source());
+    }
+    lighting.impl().check(lights);
+    const Visibility all = even_visibility(context, frame.size, 1.0f);
+    std::vector<LitBy> shaded;
+    for (const Light& light : lights)
+        shaded.push_back({light, &all});
+    if (shaded.empty()) shaded.push_back({no_light(), &all});
+    Painter painter(context.impl(), frame);
+    painter.shade(shaded);
+    Progress silent;
+    const std::shared_ptr<FrameReceivers> receivers = context.impl().receiver_points(frame, silent);
+    painter.shade_vertices(lighting.impl().at(receivers->points, lights),
+                           shading == VertexShading::averaged);
+    return composed(painter, options);
 }
 
 }  // namespace gnomon

@@ -22,6 +22,17 @@ struct ShadeFrame {
     uvec2 size;
 };
 
+/// What a receiver takes from the vertices around it.
+struct VertexShade {
+    vec3 irradiance;   // on the flat surface
+    vec3 averaged_ws;  // unit vector
+};
+
+struct VertexPush {
+    uvec2 size;
+    float most_factor;  // by which bumps count; 0: they do not
+};
+
 struct ComposePush {
     vec3 ambient;
     float exposure;

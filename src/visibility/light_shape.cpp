@@ -49,6 +49,13 @@ DVec3 center_ws(const Light& light) {
     return DVec3(light_shape(light).position);
 }
 
+bool same_place(const Light& a, const Light& b) {
+    const shared::LightShape p = light_shape(a);
+    const shared::LightShape q = light_shape(b);
+    return a.index() == b.index() && p.position == q.position && p.radius == q.radius &&
+           p.half_u == q.half_u && p.half_v == q.half_v && p.normal == q.normal;
+}
+
 shared::ReceiverPush receiver_push(const raster::Receivers& receivers, const Light& light) {
     shared::ReceiverPush push{.es_from_clip = receivers.eye_from_clip(),
                               .light = light_shape(light),

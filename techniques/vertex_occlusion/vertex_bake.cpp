@@ -25,6 +25,7 @@ namespace {
 
 using trace::Receiver;
 using trace::Triangle;
+using vertex_grid::GridCell;
 
 /// Vertices that are traced together: enough for all threads, few enough that what they are traced
 /// from takes some megabytes.
@@ -55,29 +56,12 @@ private:
     double begin_, share_;
 };
 
-DVec3 position_ws(const Triangle& triangle, DVec3 weights) {
-    const auto& [a, b, c] = triangle.corners_ws;
-    return weights.x * a + weights.y * b + weights.z * c;
-}
-
 /// The vertices of a triangle as receivers; none where no part of the light is above their side.
 void add_vertices(const Scene& scene, const TriangleGrid& grid, bool front, const Light& light,
                   std::span<Receiver> out) {
-    const Triangle triangle = trace::world_triangle(scene, grid.id);
-    const Mesh& mesh = scene.meshes()[scene.instances()[grid.id.instance].mesh];
-    const DVec3 normal = triangle.front_normal_ws();
-    const double area2 = glm::length(normal);
-    if (!(area2 > 0.0) || (!front && !scene.materials()[mesh.material].double_sided)) return;
-    const Vec3 normal_ws((front ? 1.0 : -1.0) / area2 * normal);
-    std::size_t at = 0;
-    for (unsigned j = 0; j <= grid.parts; ++j) {
-        for (unsigned i = 0; i + j <= grid.parts; ++i, ++at) {
-            const Vec3 p_ws(position_ws(triangle, sampled_at(grid.parts, {i, j})));
-            // On no surface: in the plane of a solid's face a vertex counts as outside of it,
-            // wherever the rest of its triangle lies.
-            const Receiver vertex{p_ws, normal_ws, {trace::kNoSurface, 0}};
-            if (trace::faces_light(vertex, light)) out[at] = vertex;
-        }
+    vertex_grid::place_vertices(scene, grid, front, out);
+    for (Receiver& vertex : out) {
+        if (!trace::faces_light(vertex, light)) vertex = {};
     }
 }
 
@@ -118,13 +102,6 @@ bool differ(const std::array<float, 3>& values) {
 
 }  // namespace
 
-bool same_place(const Light& a, const Light& b) {
-    const shared::LightShape p = light_shape(a);
-    const shared::LightShape q = light_shape(b);
-    return a.index() == b.index() && p.position == q.position && p.radius == q.radius &&
-           p.half_u == q.half_u && p.half_v == q.half_v && p.normal == q.normal;
-}
-
 VertexBake::VertexBake(const Scene& scene, const SceneGrid& grid, const trace::Tracer& tracer,
                        const Light& light, int samples, Progress& progress) {
     for (const bool front : {true, false})
@@ -143,13 +120,14 @@ void VertexBake::trace_side(const Scene& scene, const SceneGrid& grid, const tra
         const std::uint64_t begin = triangles[first].first;
         std::uint64_t end = begin;
         for (; last < triangles.size() && (end == begin || end - begin < kBatchVertices); ++last)
-            end = triangles[last].first + vertex_count(triangles[last].parts);
+            end = triangles[last].first + vertex_grid::vertex_count(triangles[last].parts);
         vertices.assign(end - begin, {});
         parallel_for(last - first, kTrianglesPerTask, [&](std::size_t from, std::size_t to) {
             for (const TriangleGrid& triangle : triangles.subspan(first + from, to - from)) {
-                add_vertices(scene, triangle, front, light,
-                             std::span(vertices).subspan(triangle.first - begin,
-                                                         vertex_count(triangle.parts)));
+                add_vertices(
+                    scene, triangle, front, light,
+                    std::span(vertices).subspan(triangle.first - begin,
+                                                vertex_grid::vertex_count(triangle.parts)));
             }
         });
         PartProgress part(progress, (front ? 0 : all) + begin, end - begin, 2 * all);
@@ -178,10 +156,11 @@ void VertexLookup::look_up(std::span<const Receiver> receivers, std::span<float>
         const DVec3 normal_ws(receiver.normal_ws);
         const DVec3 p_ws(receiver.position_ws);
         const bool front = glm::dot(triangle.front_normal_ws(), normal_ws) > 0.0;
-        const GridCell cell = cell_at(grid.parts, triangle.barycentric(p_ws));
+        const GridCell cell = vertex_grid::cell_at(grid.parts, triangle.barycentric(p_ws));
         std::array<float, 3> values{};
         for (int k = 0; k < 3; ++k) {
-            values[k] = bake_.value(front, grid.first + vertex_index(grid.parts, cell.vertices[k]));
+            values[k] = bake_.value(
+                front, grid.first + vertex_grid::vertex_index(grid.parts, cell.vertices[k]));
         }
         out[index] = mean(values, cell.weights);
         if (!walls_ || !differ(values)) continue;
@@ -189,7 +168,8 @@ void VertexLookup::look_up(std::span<const Receiver> receivers, std::span<float>
         more.lifted.position_ws =
             Vec3(p_ws + kLookHeight_cells * static_cast<double>(grid.cell_m) * normal_ws);
         for (int k = 0; k < 3; ++k) {
-            const DVec3 vertex_ws = position_ws(triangle, sampled_at(grid.parts, cell.vertices[k]));
+            const DVec3 vertex_ws = vertex_grid::position_ws(
+                triangle, vertex_grid::sampled_at(grid.parts, cell.vertices[k]));
             more.to_vertices_ws[k] = Vec3(vertex_ws - p_ws);
         }
         mixed.push_back(more);

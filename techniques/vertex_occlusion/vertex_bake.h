@@ -4,7 +4,7 @@
 #include <gnomon/progress.h>
 
 #include "trace/tracer.h"
-#include "vertex_grid.h"
+#include "visibility/vertex_grid.h"
 
 #include <array>
 #include <span>
@@ -12,9 +12,8 @@
 
 namespace gnomon::vertex_occlusion {
 
-/// True where two lights are at one place and of one size, whatever their colours, strengths and
-/// cones: what is baked for one serves the other.
-bool same_place(const Light& a, const Light& b);
+using vertex_grid::SceneGrid;
+using vertex_grid::TriangleGrid;
 
 /// Visibility of one light at the vertices of a scene's grid, on both sides of each triangle.
 class VertexBake {

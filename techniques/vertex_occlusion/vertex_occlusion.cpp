@@ -6,6 +6,7 @@
 #include "technique/param_table.h"
 #include "technique/technique_base.h"
 #include "vertex_bake.h"
+#include "visibility/light_shape.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ const TechniqueInfo& vertex_occlusion_info();
 
 namespace {
 
-using vertex_occlusion::SceneGrid;
+using vertex_grid::SceneGrid;
 using vertex_occlusion::VertexBake;
 using vertex_occlusion::VertexLookup;
 
@@ -71,7 +72,7 @@ private:
             context().tracer(frame.scene, frame.ignore_alpha, progress);
         const trace::Tracer& tracer = *kept;
         if (!baked_ || baked_->ignore_alpha != frame.ignore_alpha ||
-            !vertex_occlusion::same_place(baked_->light, frame.light)) {
+            !same_place(baked_->light, frame.light)) {
             baked_.reset();  // first, so that two bakes never are in memory at once
             baked_ = Baked{
                 frame.light, frame.ignore_alpha,

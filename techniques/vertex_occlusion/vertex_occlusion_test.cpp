@@ -6,6 +6,7 @@
 #include "raster/small_scene_test.h"
 #include "vertex_bake.h"
 #include "visibility/context_test.h"
+#include "visibility/light_shape.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "vertex_grid.h"
+#include "visibility/vertex_grid.h"
 
 #include "base/parallel.h"
 
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gnomon::vertex_occlusion {
+namespace gnomon::vertex_grid {
 
 namespace {
 
@@ -108,7 +108,29 @@ SceneGrid::SceneGrid(const Scene& scene, double edge_m, std::uint64_t most_verti
         grid.parts = parts_for(longest_m[i], edge_m_);
         grid.cell_m = longest_m[i] / static_cast<float>(grid.parts);
         grid.first = vertex_count_;
-        vertex_count_ += vertex_occlusion::vertex_count(grid.parts);
+        vertex_count_ += vertex_grid::vertex_count(grid.parts);
+    }
+}
+
+DVec3 position_ws(const trace::Triangle& triangle, DVec3 barycentric) {
+    const auto& [a, b, c] = triangle.corners_ws;
+    return barycentric.x * a + barycentric.y * b + barycentric.z * c;
+}
+
+void place_vertices(const Scene& scene, const TriangleGrid& grid, bool front,
+                    std::span<trace::Receiver> out) {
+    const trace::Triangle triangle = trace::world_triangle(scene, grid.id);
+    const Mesh& mesh = scene.meshes()[scene.instances()[grid.id.instance].mesh];
+    const DVec3 normal = triangle.front_normal_ws();
+    const double area2 = glm::length(normal);
+    if (!(area2 > 0.0) || (!front && !scene.materials()[mesh.material].double_sided)) return;
+    const Vec3 normal_ws((front ? 1.0 : -1.0) / area2 * normal);
+    std::size_t at = 0;
+    for (unsigned j = 0; j <= grid.parts; ++j) {
+        for (unsigned i = 0; i + j <= grid.parts; ++i, ++at) {
+            const Vec3 p_ws(position_ws(triangle, sampled_at(grid.parts, {i, j})));
+            out[at] = {p_ws, normal_ws, {trace::kNoSurface, 0}};
+        }
     }
 }
 
@@ -117,4 +139,4 @@ std::uint64_t SceneGrid::memory_bytes() const {
            first_of_instance_.size() * sizeof(std::uint64_t);
 }
 
-}  // namespace gnomon::vertex_occlusion
+}  // namespace gnomon::vertex_grid

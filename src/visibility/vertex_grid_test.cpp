@@ -1,4 +1,4 @@
-#include "vertex_grid.h"
+#include "visibility/vertex_grid.h"
 
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-namespace gnomon::vertex_occlusion {
+namespace gnomon::vertex_grid {
 namespace {
 
 TEST(VertexGrid, EveryVertexHasItsIndex) {
@@ -96,4 +96,4 @@ TEST(VertexGrid, LargeScenesGetTheLeastEdgeThatIsAfforded) {
 }
 
 }  // namespace
-}  // namespace gnomon::vertex_occlusion
+}  // namespace gnomon::vertex_grid

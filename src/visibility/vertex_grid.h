@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace gnomon::vertex_occlusion {
+namespace gnomon::vertex_grid {
 
 /// A vertex of the grid in a triangle whose edges are each cut into `parts`: at the barycentric
 /// coordinates (1 - (i + j) / parts, i / parts, j / parts), i + j <= parts.
@@ -76,4 +76,13 @@ private:
     double edge_m_ = 0.0;
 };
 
-}  // namespace gnomon::vertex_occlusion
+/// Where barycentric coordinates are in the world.
+DVec3 position_ws(const trace::Triangle& triangle, DVec3 barycentric);
+
+/// The grid's vertices on a side of the triangle as receivers, vertex_count() of them; left as they
+/// are where that side is not seen. They are on no surface: in the plane of a solid's face a vertex
+/// counts as outside of it, wherever the rest of its triangle lies.
+void place_vertices(const Scene& scene, const TriangleGrid& grid, bool front,
+                    std::span<trace::Receiver> out);
+
+}  // namespace gnomon::vertex_grid
