@@ -53,7 +53,8 @@ ExactTimes::ExactTimes(const Scene& scene, std::span<const DVec3> to_light_ws, b
                        Progress& progress)
     : tracer_(scene, ignore_alpha, progress),
       to_light_ws_(fine_path(to_light_ws, kParts)),
-      steps_(static_cast<int>(to_light_ws.size())) {}
+      steps_(static_cast<int>(to_light_ws.size())),
+      closed_(path_ends({.to_light_ws = {to_light_ws.begin(), to_light_ws.end()}}).closed) {}
 
 std::vector<ExactTimes::Search> ExactTimes::searches_of(std::span<const LitTimes> times) const {
     const std::uint32_t end = static_cast<std::uint32_t>(steps_) * kParts;
@@ -104,6 +105,33 @@ void ExactTimes::search(std::span<const trace::Receiver> receivers,
     }
 }
 
+/// What is lit at one end of a closed path, from that end on, and not at the other, may change in
+/// the other's half step, where nothing was found.
+void ExactTimes::refine_over_ends(std::span<const trace::Receiver> receivers,
+                                  std::span<LitTimes> times) const {
+    constexpr std::uint32_t kHalf = kParts / 2;
+    const std::uint32_t end = static_cast<std::uint32_t>(steps_) * kParts;
+    std::vector<Search> searches;
+    for (std::uint32_t receiver = 0; receiver < times.size(); ++receiver) {
+        if (times[receiver].empty()) continue;
+        const bool begins = times[receiver].front().rise == 0;
+        const bool lasts = times[receiver].back().fall == end;
+        if (begins && !lasts) searches.push_back({receiver, end - kHalf, end, true});
+        if (lasts && !begins) searches.push_back({receiver, 0, kHalf, false});
+    }
+    search(receivers, searches);
+    for (const Search& found : searches) {
+        LitTimes& lit = times[found.receiver];
+        const auto code = static_cast<std::uint16_t>(found.low);
+        if (found.rises) {
+            lit.push_back({code, static_cast<std::uint16_t>(end)});
+        } else {
+            lit.insert(lit.begin(), {0, code});
+        }
+        tidy(lit);
+    }
+}
+
 void ExactTimes::refine(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
                         Progress& progress) const {
     parallel_for(
@@ -120,6 +148,7 @@ void ExactTimes::refine(std::span<const trace::Receiver> receivers, std::span<Li
                 }
                 tidy(of_receiver);
             }
+            if (closed_) refine_over_ends(receivers.subspan(first, last - first), here);
         },
         "finding exact times", &progress);
 }

@@ -24,6 +24,7 @@ public:
     /// the middle of steps find them; out, of which each change has moved by up to half a step to
     /// where rays find it, after a bisection. What is seen nowhere but in the middle of a step is
     /// left out, and where there is more than one change between two middles one of them is told.
+    /// Over the ends of a closed path it is sought as between two other middles.
     /// Depends on a receiver and its times alone. Throws Error{cancelled}.
     void refine(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
                 Progress& progress) const;
@@ -32,10 +33,13 @@ private:
     struct Search;
     std::vector<Search> searches_of(std::span<const LitTimes> times) const;
     void search(std::span<const trace::Receiver> receivers, std::span<Search> searches) const;
+    void refine_over_ends(std::span<const trace::Receiver> receivers,
+                          std::span<LitTimes> times) const;
 
     trace::Tracer tracer_;
     std::vector<DVec3> to_light_ws_;  ///< of each part of each step
     int steps_;
+    bool closed_;
 };
 
 }  // namespace gnomon::bake

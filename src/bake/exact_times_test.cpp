@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -166,6 +167,61 @@ TEST_P(ExactTimesOfBoxes, AreThoseOfTheAlmanac) {
 
 INSTANTIATE_TEST_SUITE_P(Days, ExactTimesOfBoxes,
                          testing::Values(2026y / June / 21, 2026y / December / 21));
+
+/// A sheet north of the origin, upright, from one x to the other.
+Scene northern_sheet(float from_m, float to_m) {
+    Mesh mesh;
+    mesh.positions = {{from_m, -1, -1}, {to_m, -1, -1}, {to_m, 40, -1}, {from_m, 40, -1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    SceneData data;
+    data.materials.emplace_back();
+    data.meshes.push_back(mesh);
+    data.instances.emplace_back();
+    return Scene(std::move(data));
+}
+
+// A sun that circles at one height, from north to north, and a sheet that ends nearly in the north:
+// just before the path's end or after its begin, within the half steps there.
+TEST(ExactTimes, AreFoundOverTheEndsOfAClosedPath) {
+    constexpr int kSteps = 100;
+    constexpr double kCodes = kSteps * ExactTimes::kParts;
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    BakePath path{.end_s = 86400.0};
+    for (int k = 0; k < kSteps; ++k) {
+        const double azimuth = kTurn * (k + 0.5) / kSteps;
+        path.to_light_ws.push_back(
+            glm::normalize(DVec3(std::sin(azimuth), 0.4, -std::cos(azimuth))));
+    }
+    ASSERT_TRUE(path_ends(path).closed);
+    const std::vector<Receiver> point{{{0, 0, 0}, {0, 1, 0}, {trace::kNoSurface, 0}}};
+    Progress silent;
+    for (const bool to_the_east : {false, true}) {
+        for (const float edge_m : {-0.03f, -0.02f, -0.004f, 0.004f, 0.02f, 0.03f}) {
+            SCOPED_TRACE(testing::Message() << to_the_east << ' ' << edge_m);
+            const Scene scene =
+                to_the_east ? northern_sheet(edge_m, 5.0f) : northern_sheet(-5.0f, edge_m);
+            const LitTimes lit =
+                LightDay(scene, path, {.bits = BakeBits::sixteen, .resume_file = {}}, silent)
+                    .times(point, silent)
+                    .front();
+            std::vector<double> changes;
+            for (const CodedInterval& interval : lit) {
+                if (interval.rise > 0) changes.push_back(interval.rise);
+                if (interval.fall < kCodes) changes.push_back(interval.fall);
+            }
+            const auto code_of = [&](double azimuth) {
+                return kCodes * (azimuth / kTurn - std::floor(azimuth / kTurn));
+            };
+            const double far_edge = std::atan(5.0) * (to_the_east ? 1.0 : -1.0);
+            std::vector<double> expected{code_of(std::atan(static_cast<double>(edge_m))),
+                                         code_of(far_edge)};
+            std::ranges::sort(expected);
+            ASSERT_EQ(changes.size(), 2u);
+            EXPECT_NEAR(changes[0], expected[0], 0.51);
+            EXPECT_NEAR(changes[1], expected[1], 0.51);
+        }
+    }
+}
 
 TEST(ExactTimes, AreTheSameOnAnyNumberOfThreads) {
     const BakePath path = bake_path(sun_of(2026y / March / 21, 100), "", "");
