@@ -111,6 +111,67 @@ TEST(TileTracer, SaysWhatBruteForceSays) {
     EXPECT_LT(lit, all / 2);
 }
 
+/// Ground of texels 0.1 m wide among small triangles, all of it around a place.
+struct Patch {
+    std::vector<Mesh> casters;
+    std::vector<Receiver> receivers;
+};
+
+Patch patch_at(Vec3 place, Random& random) {
+    Patch patch{
+        .casters = {scattered(random, 200, 3.0f, 0.5f)},
+        .receivers = receivers_on(place - Vec3(0.4f, 0.0f, -0.4f), {0.8f, 0, 0}, {0, 0, -0.8f}, 8)};
+    for (Vec3& p : patch.casters[0].positions)
+        p += place;
+    // On the ground itself, whose corners are far away.
+    constexpr float kGround_m = 40.0f;
+    patch.casters.push_back(trace::quad(place + Vec3(-kGround_m, 0, kGround_m),
+                                        {2 * kGround_m, 0, 0}, {0, 0, -2 * kGround_m}));
+    for (Receiver& receiver : patch.receivers)
+        receiver.id = {1, 0};
+    return patch;
+}
+
+// Floats are a millimetre apart at 10 km: what they cannot tell is much, and all of it is told.
+TEST(TileTracer, TilesFarFromTheOrigin) {
+    const Frame frame = frame_around(pole_at(0.84));
+    for (const Vec3 place : {Vec3(10'000, 30, -7'000), Vec3(-10'000, 0, 0), Vec3(0, 0, 10'000)}) {
+        Random random(5);
+        const Patch patch = patch_at(place, random);
+        const Case c{trace::make_scene({{patch.casters[0]}, {patch.casters[1]}}), frame,
+                     circle(frame, 0.409, -1.9, 1.9, 200), patch.receivers};
+        expect_exact(c, fmt::format("at {}, {}, {}", place.x, place.y, place.z));
+        const int lit = lit_steps(by_tiles(c, 64));
+        EXPECT_GT(lit, 1000);
+        EXPECT_LT(lit, 200 * 64 - 1000);
+    }
+}
+
+// Two kilometres of scene, whose boxes reach from one corner to the other, and a tile at a corner.
+TEST(TileTracer, ATileAtTheCornerOfALargeScene) {
+    const Frame frame = frame_around(pole_at(0.84));
+    Random random(6);
+    const Patch here = patch_at({1000, 0, 1000}, random);
+    const Patch there = patch_at({-1000, 5, -1000}, random);
+    // Towers that cast long shadows over all of it when the sun is low.
+    const Mesh towers = [&] {
+        Mesh mesh = scattered(random, 300, 1000.0f, 60.0f);
+        for (Vec3& p : mesh.positions)
+            p.y = 0.02f * std::abs(p.y);
+        return mesh;
+    }();
+    const Case c{trace::make_scene({{here.casters[0]},
+                                    {here.casters[1]},
+                                    {there.casters[0]},
+                                    {there.casters[1]},
+                                    {towers}}),
+                 frame, circle(frame, -0.2, -1.4, 1.4, 200), here.receivers};
+    expect_exact(c, "at the corner");
+    const int lit = lit_steps(by_tiles(c, 64));
+    EXPECT_GT(lit, 1000);
+    EXPECT_LT(lit, 200 * 64 - 1000);
+}
+
 TEST(TileTracer, SaysTheSameWithAnyInstructions) {
     Random random(11);
     const Frame frame = frame_around(pole_at(0.84));
