@@ -275,12 +275,13 @@ class Work(CliTest):
         told, vertex = render("--lighting", "vertex", *coarse)
         self.assertIn("vertices, cut edges of 1 m or less", told)
         self.assertNotEqual(render("--lighting", "vertex_flat", *coarse)[1], vertex)
+        self.assertNotEqual(render("--lighting", "vertex", *coarse, "--vertex_occlusion.walls", "false")[1], vertex)
         self.assertNotEqual(render("--lighting", "pixel")[1], vertex)
 
     def test_what_light_by_vertices_is_not_for(self):
         out = self.folder / "frame.png"
         for flag, value in (("--technique", "pssm"), ("--samples", 4), ("--visibility", self.folder / "v.exr"),
-                            ("--compose", "subtractive"), ("--vertex_occlusion.walls", "false")):
+                            ("--compose", "subtractive")):
             self.assert_fails(INPUT, [flag, "--lighting vertex"], "render", "cube", "--lighting", "vertex", flag, value,
                               "-o", out)
         self.assert_fails(INPUT, ["--pssm.splits", "vertex_occlusion"], "render", "cube", "--lighting", "vertex",

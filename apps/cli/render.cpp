@@ -81,7 +81,7 @@ VertexLightingOptions vertex_options(const RenderFlags& flags, const Session& se
         if (name == "samples") options.samples = std::get<int>(value);
         if (name == "vertices")
             options.most_vertices = kThousand * static_cast<std::uint64_t>(std::get<int>(value));
-        if (name == "walls") fail("--vertex_occlusion.walls");
+        if (name == "walls") options.walls = std::get<bool>(value);
     }
     return options;
 }
@@ -207,7 +207,7 @@ Command add_render(CLI::App& program) {
     add_parsed(*app, "--lighting", "pixel|vertex|vertex_flat",
                "pixel: each pixel's light by the visibility there (default); vertex: light traced "
                "at vertices, with averaged L for normals between them; vertex_flat: without that. "
-               "--vertex_occlusion.tessellate, vertices and samples say which vertices",
+               "The parameters of vertex_occlusion say which vertices",
                [flags](const std::string& text) {
                    flags->shading = parse_word("--lighting", text, kShadings);
                })

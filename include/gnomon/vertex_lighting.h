@@ -86,6 +86,7 @@ struct VertexLightingOptions {
     int samples = 32;                         ///< of trace_vertex_lights()
     /// Where a light with a place gives less, vertices are left out; 0: nowhere.
     float least_irradiance = 0.0f;
+    bool walls = true;  ///< receivers take nothing from vertices that something stands before
     bool ignore_alpha = false;
 };
 

@@ -150,6 +150,28 @@ TEST_F(VertexLightingTest, ShadowsAreRampsOfACell) {
     EXPECT_LE(between_fine, 1u);
 }
 
+TEST_F(VertexLightingTest, TakesNothingFromBehindAWall) {
+    // A sheet that stands upright on what is seen: one side of it is dark, and the other, lit one
+    // has vertices on both sides.
+    SceneData data = wall_data();
+    SceneData side = raster::scene_data(
+        {raster::quad({0.1f, -2.0f, 0.0f}, {0.0f, 4.0f, 0.0f}, {0.0f, 0.0f, 3.0f})});
+    data.meshes.push_back(side.meshes[0]);
+    data.instances.push_back(data.instances[0]);
+    data.instances.back().mesh = 1;
+    const Frame frame = frame_of(std::move(data));
+    const std::vector<Light> lights{sun_at(45.0f)};  // from +X: dark for x in (-2.9, 0.1)
+    const float lit = shown(kGrey.x / kPi * 2.0f * std::sqrt(0.5f));
+    // Pixel 9 is at x = 0.19; vertices are half a metre apart.
+    const Image with = picture(frame, traced(frame, lights, {.edge_m = 0.8}), lights);
+    const Image without =
+        picture(frame, traced(frame, lights, {.edge_m = 0.8, .walls = false}), lights);
+    for (unsigned y = 0; y < kSize.height; ++y) {
+        EXPECT_NEAR(with.at(9, y, 0), lit, kTolerance) << y;
+        EXPECT_LT(without.at(9, y, 0), lit - 0.02f) << y;
+    }
+}
+
 TEST_F(VertexLightingTest, LeavesOutVerticesBeyondALightsReach) {
     const Frame frame = frame_of(wall_data());
     const PointLight lamp{.position_ws = {-0.9f, 0, 0.1f}, .intensity = Vec3(1.0f)};

@@ -119,19 +119,21 @@ float mean_luminance(std::span<const std::vector<std::vector<VertexLight>>> seen
 
 VertexLighting::Impl::Impl(const Scene& scene, std::span<const Light> lights,
                            const VertexLightingOptions& options, Progress& progress)
-    : scene_(scene), lights_(lights.begin(), lights.end()) {
+    : scene_(scene),
+      tracer_(scene, options.ignore_alpha, progress),
+      lights_(lights.begin(), lights.end()),
+      walls_(options.walls) {
     gnomon::check(options);
     for (const Light& light : lights)
         validate(light);
     grid_ = vertex_grid::SceneGrid(scene, options.edge_m, options.most_vertices);
-    const trace::Tracer tracer(scene, options.ignore_alpha, progress);
     for (const bool front : {true, false}) {
         const std::vector<Receiver> vertices = vertices_of(scene, grid_, front);
         std::vector<std::vector<VertexLight>>& side = seen_[front ? 0 : 1];
         for (std::size_t l = 0; l < lights.size(); ++l) {
             OfAll part(progress, (front ? 0 : lights.size()) + l, 2 * lights.size());
             side.push_back(lighting::trace_vertex_light(
-                tracer, within_reach(vertices, lights[l], options.least_irradiance), lights[l],
+                tracer_, within_reach(vertices, lights[l], options.least_irradiance), lights[l],
                 options.samples, lighting::kVertexSeed, part));
         }
     }
@@ -166,27 +168,79 @@ void VertexLighting::Impl::check(std::span<const Light> lights) const {
     }
 }
 
-shared::VertexShade VertexLighting::Impl::at(const Receiver& receiver,
-                                             std::span<const Vec3> strengths) const {
-    const trace::Triangle triangle = trace::world_triangle(scene_, receiver.id);
+struct VertexLighting::Impl::Corners {
+    std::size_t index = 0;  ///< among the receivers
+    TangentFrame frame;
+    DVec3 weights{0.0};
+    std::array<Vec3, 3> irradiances{}, averages_ts{};
+
+    bool differ() const {
+        return irradiances[0] != irradiances[1] || irradiances[0] != irradiances[2];
+    }
+    /// Without the weights of corners that a wall hides, unless that leaves none.
+    void leave_out(const std::array<std::uint8_t, 3>& hidden) {
+        DVec3 seen = weights;
+        for (int k = 0; k < 3; ++k) {
+            if (hidden[static_cast<std::size_t>(k)] != 0) seen[k] = 0.0;
+        }
+        const double sum = seen.x + seen.y + seen.z;
+        if (sum > 0.0) weights = seen / sum;
+    }
+    shared::VertexShade mean() const {
+        Vec3 irradiance(0.0f), averaged_ts(0.0f);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto weight = static_cast<float>(weights[static_cast<int>(k)]);
+            irradiance += weight * irradiances[k];
+            averaged_ts += weight * averages_ts[k];
+        }
+        // None of the three is below the face: their mean has a length.
+        return {.irradiance = irradiance, .averaged_ws = world_from(frame, normalize(averaged_ts))};
+    }
+};
+
+VertexLighting::Impl::Corners VertexLighting::Impl::corners(const Receiver& receiver,
+                                                            const trace::Triangle& triangle,
+                                                            const vertex_grid::GridCell& cell,
+                                                            std::span<const Vec3> strengths) const {
     const TriangleGrid& grid = grid_.of(receiver.id);
     const bool front = glm::dot(triangle.front_normal_ws(), DVec3(receiver.normal_ws)) > 0.0;
-    const vertex_grid::GridCell cell =
-        vertex_grid::cell_at(grid.parts, triangle.barycentric(DVec3(receiver.position_ws)));
-    const TangentFrame frame = frame_about(receiver.normal_ws);
+    Corners corners{.frame = frame_about(receiver.normal_ws), .weights = cell.weights};
     std::vector<StrongVertexLight> lights(strengths.size());
-    Vec3 irradiance(0.0f), averaged_ts(0.0f);
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
         const std::uint64_t vertex =
             grid.first + vertex_grid::vertex_index(grid.parts, cell.vertices[k]);
         for (std::size_t l = 0; l < lights.size(); ++l)
             lights[l] = {seen_[front ? 0 : 1][l][vertex], strengths[l]};
-        const auto weight = static_cast<float>(cell.weights[k]);
-        irradiance += weight * vertex_irradiance(lights, receiver.normal_ws);
-        averaged_ts += weight * averaged_light_ts(lights, frame, full_luminance_);
+        corners.irradiances[k] = vertex_irradiance(lights, receiver.normal_ws);
+        corners.averages_ts[k] = averaged_light_ts(lights, corners.frame, full_luminance_);
     }
-    // None of the three is below the face: their mean has a length.
-    return {.irradiance = irradiance, .averaged_ws = world_from(frame, normalize(averaged_ts))};
+    return corners;
+}
+
+void VertexLighting::Impl::shade(std::span<const Receiver> receivers,
+                                 std::span<const Vec3> strengths,
+                                 std::span<shared::VertexShade> out) const {
+    std::vector<Corners> mixed;
+    std::vector<vertex_grid::CornerRays> rays;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const Receiver& receiver = receivers[i];
+        if (!receiver.exists()) continue;
+        const trace::Triangle triangle = trace::world_triangle(scene_, receiver.id);
+        const TriangleGrid& grid = grid_.of(receiver.id);
+        const vertex_grid::GridCell cell =
+            vertex_grid::cell_at(grid.parts, triangle.barycentric(DVec3(receiver.position_ws)));
+        Corners found = corners(receiver, triangle, cell, strengths);
+        out[i] = found.mean();
+        if (!walls_ || !found.differ()) continue;
+        found.index = i;
+        mixed.push_back(found);
+        rays.push_back(vertex_grid::corner_rays(receiver, triangle, grid, cell));
+    }
+    const auto hidden = vertex_grid::hidden_corners(tracer_, rays);
+    for (std::size_t i = 0; i < mixed.size(); ++i) {
+        mixed[i].leave_out(hidden[i]);
+        out[mixed[i].index] = mixed[i].mean();
+    }
 }
 
 std::vector<shared::VertexShade> VertexLighting::Impl::at(std::span<const Receiver> receivers,
@@ -196,9 +250,8 @@ std::vector<shared::VertexShade> VertexLighting::Impl::at(std::span<const Receiv
         strengths.push_back(light_strength(light));
     std::vector<shared::VertexShade> shades(receivers.size());
     parallel_for(receivers.size(), kReceiversPerTask, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            if (receivers[i].exists()) shades[i] = at(receivers[i], strengths);
-        }
+        shade(receivers.subspan(first, last - first), strengths,
+              std::span(shades).subspan(first, last - first));
     });
     return shades;
 }

@@ -4,7 +4,7 @@
 
 #include "lighting/lighting.shared.h"
 #include "trace/receiver.h"
-#include "visibility/vertex_grid.h"
+#include "visibility/vertex_walls.h"
 
 #include <array>
 #include <span>
@@ -29,14 +29,21 @@ public:
                                         std::span<const Light> lights) const;
 
 private:
-    shared::VertexShade at(const trace::Receiver& receiver, std::span<const Vec3> strengths) const;
+    /// What a receiver takes from each corner of its cell.
+    struct Corners;
+    Corners corners(const trace::Receiver& receiver, const trace::Triangle& triangle,
+                    const vertex_grid::GridCell& cell, std::span<const Vec3> strengths) const;
+    void shade(std::span<const trace::Receiver> receivers, std::span<const Vec3> strengths,
+               std::span<shared::VertexShade> out) const;
 
     Scene scene_;
+    trace::Tracer tracer_;
     vertex_grid::SceneGrid grid_;
     std::vector<Light> lights_;
     /// Of fronts and backs, of each light, of each vertex of the grid.
     std::array<std::vector<std::vector<VertexLight>>, 2> seen_;
     float full_luminance_ = 1.0f;
+    bool walls_ = true;
 };
 
 }  // namespace gnomon

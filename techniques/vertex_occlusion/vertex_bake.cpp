@@ -14,7 +14,7 @@
 
 #include "base/parallel.h"
 #include "trace/light_sample.h"
-#include "visibility/light_shape.h"
+#include "visibility/vertex_walls.h"
 
 #include <algorithm>
 #include <cassert>
@@ -34,10 +34,6 @@ constexpr std::size_t kTrianglesPerTask = 256;
 
 /// Apart from the truth's seed, and from that of other techniques' rays.
 constexpr unsigned kFirstSeed = 3;
-
-/// How high above the surface, in cells, a receiver looks for its vertices: higher than what lies
-/// on it, such as a road's markings, lower than a wall.
-constexpr double kLookHeight_cells = 1.0 / 32.0;
 
 /// Tells of a part of a task as of the whole.
 class PartProgress final : public Progress {
@@ -65,13 +61,11 @@ void add_vertices(const Scene& scene, const TriangleGrid& grid, bool front, cons
     }
 }
 
-/// A receiver whose vertices differ, and the rays from it to them.
+/// A receiver whose vertices differ.
 struct Mixed {
     std::size_t index = 0;  ///< among the receivers
-    Receiver lifted;
     DVec3 weights{0.0};
     std::array<float, 3> values{};
-    std::array<Vec3, 3> to_vertices_ws{};
 };
 
 /// The mean of what vertices hold by their weights; 0 when none holds anything.
@@ -145,6 +139,7 @@ std::uint64_t VertexBake::memory_bytes() const {
 
 void VertexLookup::look_up(std::span<const Receiver> receivers, std::span<float> out) const {
     std::vector<Mixed> mixed;
+    std::vector<vertex_grid::CornerRays> rays;
     for (std::size_t index = 0; index < receivers.size(); ++index) {
         const Receiver& receiver = receivers[index];
         if (!trace::faces_light(receiver, light_)) {
@@ -164,26 +159,12 @@ void VertexLookup::look_up(std::span<const Receiver> receivers, std::span<float>
         }
         out[index] = mean(values, cell.weights);
         if (!walls_ || !differ(values)) continue;
-        Mixed more{index, receiver, cell.weights, values, {}};
-        more.lifted.position_ws =
-            Vec3(p_ws + kLookHeight_cells * static_cast<double>(grid.cell_m) * normal_ws);
-        for (int k = 0; k < 3; ++k) {
-            const DVec3 vertex_ws = vertex_grid::position_ws(
-                triangle, vertex_grid::sampled_at(grid.parts, cell.vertices[k]));
-            more.to_vertices_ws[k] = Vec3(vertex_ws - p_ws);
-        }
-        mixed.push_back(more);
+        mixed.push_back({index, cell.weights, values});
+        rays.push_back(vertex_grid::corner_rays(receiver, triangle, grid, cell));
     }
-
-    std::vector<trace::ShadowRay> rays;
-    for (const Mixed& one : mixed) {
-        for (const Vec3 to_vertex_ws : one.to_vertices_ws)
-            rays.push_back({&one.lifted, to_vertex_ws, false});
-    }
-    std::vector<std::uint8_t> hidden(rays.size());
-    tracer_.blocked(rays, hidden);
+    const auto hidden = vertex_grid::hidden_corners(tracer_, rays);
     for (std::size_t i = 0; i < mixed.size(); ++i)
-        out[mixed[i].index] = mean_of_seen(mixed[i], std::span(hidden).subspan(3 * i, 3));
+        out[mixed[i].index] = mean_of_seen(mixed[i], hidden[i]);
 }
 
 }  // namespace gnomon::vertex_occlusion
