@@ -263,6 +263,19 @@ class Bake(CliTest):
         self.assert_fails(INPUT, ["page0-rise0.png"], "render", day, "--time", "10:30", "-o", self.folder / "frame.png")
         self.assertFalse([name for name in self.files() if name in ("frame.png", "report")])
 
+    def test_rays_find_what_interval_traversal_finds(self):
+        self.bake(*self.SUN)
+        by_default = self.content()
+        self.bake(*self.SUN, "--method", "interval_traversal")
+        self.assertEqual(self.content(), by_default)
+        self.bake(*self.SUN, "--method", "rays")
+        self.assertEqual(self.content().keys(), by_default.keys())
+        report, expected = (json.loads(content["bake.json"])["report"] for content in (self.content(), by_default))
+        self.assertAlmostEqual(report["intervals"], expected["intervals"], delta=2)
+        self.assertEqual(report["texels"], expected["texels"])
+        self.assert_fails(INPUT, ["--method", "ray", "interval_traversal, rays"], "bake", "cube", *self.SUN,
+                          "--method", "ray", "-o", self.folder / "day")
+
     def test_full_disk_keeps_what_is_done(self):
         # A limit on the size of files fails as a full disk does. scene.glb has a megabyte, the times
         # of 8,000 texels a tenth of it.

@@ -37,9 +37,16 @@ struct BakeFlags {
     double texel_m = 0.1;
     int bits = 8;
     int pairs = 4;
+    BakeMethod method = BakeMethod::interval_traversal;
     bool resume = false;
     bool ignore_alpha = false;
 };
+
+BakeMethod parse_method(std::string_view flag, std::string_view text) {
+    constexpr std::array<std::string_view, 2> kWords = {"interval_traversal", "rays"};
+    const bool by_rays = parse_word(flag, text, kWords) == kWords[1];
+    return by_rays ? BakeMethod::rays : BakeMethod::interval_traversal;
+}
 
 /// As many as the bits allow, unless told.
 int steps_of(const KeyValues& values, int bits) {
@@ -150,6 +157,7 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
     }
     BakeOptions options{.texel_size_m = flags.texel_m,
                         .bits = static_cast<BakeBits>(flags.bits),
+                        .method = flags.method,
                         .most_pairs = flags.pairs,
                         .ignore_alpha = flags.ignore_alpha};
     const Scene scene = load(flags.scene, session, progress);
@@ -191,6 +199,11 @@ Command add_bake(CLI::App& program) {
     add_integer(*app, "--bits", flags->bits, {8, 16}, "of a time: 8, or 16 (default 8)");
     add_integer(*app, "--pairs", flags->pairs, {1, 16},
                 "most pairs of textures, four intervals each (default 4)");
+    add_parsed(
+        *app, "--method", "NAME",
+        "interval_traversal, or rays: one for each texel and step, slower (default "
+        "interval_traversal)",
+        [flags](const std::string& text) { flags->method = parse_method("--method", text); });
     app->add_flag("--ignore-alpha", flags->ignore_alpha, "take masked materials for solid");
     app->add_flag("--resume", flags->resume, "go on with an interrupted bake");
     app->add_option("-o,--output", flags->output, "the folder to write")->type_name("DIR");

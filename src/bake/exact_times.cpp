@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace gnomon::bake {
 
@@ -49,9 +50,9 @@ struct ExactTimes::Search {
     }
 };
 
-ExactTimes::ExactTimes(const Scene& scene, std::span<const DVec3> to_light_ws, bool ignore_alpha,
-                       Progress& progress)
-    : tracer_(scene, ignore_alpha, progress),
+ExactTimes::ExactTimes(std::shared_ptr<const trace::Tracer> tracer,
+                       std::span<const DVec3> to_light_ws)
+    : tracer_(std::move(tracer)),
       to_light_ws_(fine_path(to_light_ws, kParts)),
       steps_(static_cast<int>(to_light_ws.size())),
       closed_(path_ends({.to_light_ws = {to_light_ws.begin(), to_light_ws.end()}}).closed) {}
@@ -98,7 +99,7 @@ void ExactTimes::search(std::span<const trace::Receiver> receivers,
             }
         }
         blocked.resize(rays.size());
-        tracer_.blocked(rays, blocked);
+        tracer_->blocked(rays, blocked);
         for (std::size_t i = 0; i < rays.size(); ++i)
             asked[i]->tell(blocked[i] == 0);
         std::erase_if(open, [](const Search* search) { return search->found(); });

@@ -6,6 +6,7 @@
 #include "trace/receiver.h"
 #include "trace/tracer.h"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,7 @@ class ExactTimes {
 public:
     static constexpr int kParts = codes_per_step(BakeBits::sixteen);
 
-    /// Keeps the scene alive. Throws Error{machine} when memory runs out, Error{cancelled}.
-    ExactTimes(const Scene& scene, std::span<const DVec3> to_light_ws, bool ignore_alpha,
-               Progress& progress);
+    ExactTimes(std::shared_ptr<const trace::Tracer> tracer, std::span<const DVec3> to_light_ws);
 
     /// `times` of each receiver: in, intervals in codes that are whole steps, as the directions in
     /// the middle of steps find them; out, of which each change has moved by up to half a step to
@@ -36,7 +35,7 @@ private:
     void refine_over_ends(std::span<const trace::Receiver> receivers,
                           std::span<LitTimes> times) const;
 
-    trace::Tracer tracer_;
+    std::shared_ptr<const trace::Tracer> tracer_;
     std::vector<DVec3> to_light_ws_;  ///< of each part of each step
     int steps_;
     bool closed_;

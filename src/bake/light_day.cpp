@@ -2,7 +2,9 @@
 
 #include <gnomon/error.h>
 
+#include "bake/ray_steps.h"
 #include "bake/unfinished.h"
+#include "base/parallel.h"
 #include "base/part_progress.h"
 
 #include <algorithm>
@@ -15,6 +17,9 @@ namespace {
 
 /// Texels between two looks at whether to stop: a second or so of work.
 constexpr std::size_t kPartTexels = 1 << 16;
+
+/// Receivers whose rays one task traces: those of a step fill some batches.
+constexpr std::size_t kRayReceivers = 512;
 
 constexpr std::string_view kTask = "baking the sun";
 
@@ -37,17 +42,38 @@ LightDay::LightDay(Scene scene, BakePath path, BakeOptions options, Progress& pr
       path_(std::move(path)),
       options_(std::move(options)),
       frame_(interval::frame_around(path_.pole_ws)),
-      steps_(path_.to_light_ws, frame_),
-      tree_(scene_, frame_, options_.ignore_alpha, progress) {
-    if (options_.bits == BakeBits::sixteen)
-        exact_.emplace(scene_, path_.to_light_ws, options_.ignore_alpha, progress);
+      steps_(path_.to_light_ws, frame_) {
+    const bool by_rays = options_.method == BakeMethod::rays;
+    const bool is_exact = options_.bits == BakeBits::sixteen;
+    if (!by_rays) tree_.emplace(scene_, frame_, options_.ignore_alpha, progress);
+    if (by_rays || is_exact) {
+        tracer_ = std::make_shared<const trace::Tracer>(scene_, options_.ignore_alpha, progress);
+    }
+    if (is_exact) exact_.emplace(tracer_, path_.to_light_ws);
+}
+
+interval::DayMasks LightDay::masks(std::span<const trace::Receiver> receivers,
+                                   Progress& progress) const {
+    if (tree_) return interval::bake(*tree_, steps_, receivers, progress);
+    interval::DayMasks masks;
+    masks.steps = steps_.steps();
+    const std::size_t words = masks.words_per_mask();
+    masks.words.resize(receivers.size() * words);
+    parallel_for(
+        receivers.size(), kRayReceivers,
+        [&](std::size_t first, std::size_t last) {
+            ray_masks(*tracer_, steps_.to_sun_ws(), receivers.subspan(first, last - first),
+                      std::span(masks.words).subspan(first * words, (last - first) * words));
+        },
+        kTask, &progress);
+    return masks;
 }
 
 std::vector<LitTimes> LightDay::times(std::span<const trace::Receiver> receivers,
                                       Progress& progress) const {
     const double steps_share = exact_ ? kStepsShare : 1.0;
     PartProgress steps(progress, kTask, 0.0, steps_share);
-    const interval::DayMasks masks = interval::bake(tree_, steps_, receivers, steps);
+    const interval::DayMasks masks = this->masks(receivers, steps);
     const int codes = codes_per_step(options_.bits);
     std::vector<LitTimes> times(receivers.size());
     for (std::size_t i = 0; i < receivers.size(); ++i) {

@@ -6,7 +6,9 @@
 #include "bake/interval_codes.h"
 #include "interval/bake.h"
 #include "trace/receiver.h"
+#include "trace/tracer.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,12 +37,16 @@ public:
                                      Progress& progress) const;
 
 private:
+    /// At which steps.
+    interval::DayMasks masks(std::span<const trace::Receiver> receivers, Progress& progress) const;
+
     Scene scene_;
     BakePath path_;
     BakeOptions options_;
     interval::Frame frame_;
     interval::DayPath steps_;
-    interval::Tree tree_;
+    std::optional<interval::Tree> tree_;           ///< of interval traversal
+    std::shared_ptr<const trace::Tracer> tracer_;  ///< of rays and of exact times
     std::optional<ExactTimes> exact_;
 };
 

@@ -28,7 +28,7 @@ constexpr std::string_view kMagic = "gnomon part ";
 
 /// The beginning of the file. The number of intervals of each texel follows, then the intervals.
 struct Header {
-    std::array<char, 16> magic{"gnomon part 4\n"};
+    std::array<char, 16> magic{"gnomon part 5\n"};
     std::uint64_t checksum = 0;  ///< of all that follows it: CRC-32
     std::uint64_t fingerprint = 0;
     std::uint64_t texels = 0;     ///< that are done
@@ -196,6 +196,7 @@ std::uint64_t fingerprint(const Scene& scene, const BakePath& path, const BakeOp
     if (!options.ignore_alpha) add_holes(scene, hash);
     hash.add(std::span(path.to_light_ws));
     hash.add(std::span(&options.bits, 1));
+    hash.add(std::span(&options.method, 1));
     for (const trace::Receiver& receiver : receivers) {
         hash.add(std::span(&receiver.position_ws, 1));
         hash.add(std::span(&receiver.normal_ws, 1));
