@@ -335,9 +335,11 @@ class Bake(CliTest):
 class Interrupt(CliTest):
     COMPARE = ("compare", "courtyard", "--size", "1920x1080", "--reference-samples", "65536")
     SUN = ("sun", "courtyard", "--place", "48.137,11.575", "--year", "2026", "--minutes", "2", "--texel", "0.01")
+    BAKE = ("bake", "courtyard", "--sun", "place=48.137,11.575,date=2026-06-21", "--bits", "16", "--method", "rays",
+            "--texel", "0.05")
 
-    def interrupt(self, number, arguments=COMPARE):
-        """Sends the signal to a long command once it tells its progress; its exit code and stderr."""
+    def interrupt(self, number, arguments=COMPARE, task=""):
+        """Sends the signal to a long command once it tells its progress, at that task; its exit code and stderr."""
         def as_from_a_terminal():
             # A shell's background jobs, and so perhaps we, ignore Ctrl-C; the program would too.
             signal.signal(number, signal.SIG_DFL)
@@ -347,7 +349,7 @@ class Interrupt(CliTest):
                               preexec_fn=as_from_a_terminal) as process:
             try:
                 for line in process.stderr:
-                    if line.endswith("%\n") or line.endswith("left\n"):
+                    if line.startswith(task) and (line.endswith("%\n") or line.endswith("left\n")):
                         break
                 process.send_signal(number)
                 stdout, stderr = process.communicate(timeout=TIMEOUT_S)
@@ -372,6 +374,12 @@ class Interrupt(CliTest):
         code, stderr = self.interrupt(signal.SIGTERM)
         self.assertEqual(code, 128 + signal.SIGTERM, stderr)
         self.assertEqual(self.files(), [])
+
+    def test_a_closed_terminal_keeps_what_is_baked(self):
+        code, stderr = self.interrupt(signal.SIGHUP, self.BAKE, "baking the sun")
+        self.assertEqual(code, 128 + signal.SIGHUP, stderr)
+        self.assertIn("--resume goes on with it", stderr.splitlines()[-1])
+        self.assertEqual(self.files(), ["report.unfinished"])
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -32,10 +33,13 @@ constexpr int kMaxBarColumns = 40;
 std::atomic<int> g_stop_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
+/// Ctrl-C, a polite end, and a terminal that is closed.
+constexpr std::array<int, 3> kStopSignals = {SIGINT, SIGTERM, SIGHUP};
+
 void on_stop_signal(int number) {
     g_stop_signal.store(number);
-    std::signal(SIGINT, SIG_DFL);  // the next one of either kind ends the process
-    std::signal(SIGTERM, SIG_DFL);
+    for (const int each : kStopSignals)
+        std::signal(each, SIG_DFL);  // the next one of any kind ends the process
 }
 
 void handle_stop_signal(int number) {
@@ -81,8 +85,8 @@ void write_stderr(const std::string& text) {
 }  // namespace
 
 void install_signal_handlers() {
-    handle_stop_signal(SIGINT);
-    handle_stop_signal(SIGTERM);
+    for (const int number : kStopSignals)
+        handle_stop_signal(number);
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond its limit then fails as on a full disk
 }

@@ -9,9 +9,10 @@
 
 namespace gnomon::cli {
 
-/// From now on the first SIGINT (Ctrl-C) or SIGTERM only asks the work to stop, so that nothing is
-/// left half-written; the second ends the process at once. SIGPIPE is ignored: writing to a closed
-/// pipe fails instead. The only place of the project that handles signals.
+/// From now on the first SIGINT (Ctrl-C), SIGTERM or SIGHUP (its terminal is gone) only asks the
+/// work to stop, so that nothing is left half-written; the second ends the process at once. SIGPIPE
+/// is ignored: writing to a closed pipe fails instead. The only place of the project that handles
+/// signals.
 void install_signal_handlers();
 
 /// The signal that asked the work to stop, 0 if none did.

@@ -8,8 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -37,11 +40,17 @@ class StopsAt final : public Progress {
 public:
     explicit StopsAt(double fraction) : fraction_(fraction) {}
     void report(std::string_view task, double fraction) override {
-        if (task == "baking the sun" && fraction >= fraction_) stopped_ = true;
+        if (task != "baking the sun") return;
+        const std::lock_guard lock(mutex_);
+        if (told) told(fraction);
+        if (fraction >= fraction_) stopped_ = true;
     }
     bool cancelled() const override { return stopped_; }
 
+    std::function<void(double)> told;  ///< is called with each fraction
+
 private:
+    std::mutex mutex_;
     double fraction_;
     std::atomic<bool> stopped_{false};
 };
@@ -230,6 +239,35 @@ TEST_F(BakeFiles, AnInterruptedBakeGoesOn) {
     other = options;
     other.resume_file.clear();
     expect_equal(resumed, bake_intervals(scene, summer(64), other, silent));
+}
+
+// However few texels there are, and however they are found, no more than a block of each thread is
+// lost.
+TEST_F(BakeFiles, AnInterruptedBakeOfFewTexelsGoesOn) {
+    const Scene scene = make_builtin_scene("courtyard");
+    fs::create_directories(folder_);
+    Progress silent;
+    for (const BakeMethod method : {BakeMethod::interval_traversal, BakeMethod::rays}) {
+        for (const BakeBits bits : {BakeBits::eight, BakeBits::sixteen}) {
+            BakeOptions options{.texel_size_m = 0.5,
+                                .bits = bits,
+                                .method = method,
+                                .resume_file = folder_ / "part"};
+            StopsAt early(0.2);
+            EXPECT_THROW(bake_intervals(scene, summer(64), options, early), Error);
+            ASSERT_TRUE(fs::exists(options.resume_file));
+            // What was done is not done again: the work begins where it was.
+            StopsAt at_once(0.1);
+            double least = 1.0;
+            at_once.told = [&](double fraction) { least = std::min(least, fraction); };
+            EXPECT_THROW(bake_intervals(scene, summer(64), options, at_once), Error);
+            EXPECT_GE(least, 0.2);
+            const IntervalBake resumed = bake_intervals(scene, summer(64), options, silent);
+            fs::remove(options.resume_file);
+            options.resume_file.clear();
+            expect_equal(resumed, bake_intervals(scene, summer(64), options, silent));
+        }
+    }
 }
 
 TEST_F(BakeFiles, ABakeThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItStarts) {

@@ -1,7 +1,6 @@
 #include "bake/exact_times.h"
 
 #include "bake/fine_path.h"
-#include "base/parallel.h"
 
 #include <glm/geometric.hpp>
 
@@ -11,10 +10,6 @@
 namespace gnomon::bake {
 
 namespace {
-
-/// Receivers whose rays are traced together: some thousand rays, among which there are many that
-/// are alike.
-constexpr std::size_t kReceiversPerTask = 512;
 
 /// Leaves out what has no length, and joins what touches.
 void tidy(LitTimes& times) {
@@ -133,25 +128,19 @@ void ExactTimes::refine_over_ends(std::span<const trace::Receiver> receivers,
     }
 }
 
-void ExactTimes::refine(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
-                        Progress& progress) const {
-    parallel_for(
-        receivers.size(), kReceiversPerTask,
-        [&](std::size_t first, std::size_t last) {
-            const std::span<LitTimes> here = times.subspan(first, last - first);
-            std::vector<Search> searches = searches_of(here);
-            search(receivers.subspan(first, last - first), searches);
-            auto found = searches.begin();
-            for (LitTimes& of_receiver : here) {
-                for (CodedInterval& interval : of_receiver) {
-                    interval.rise = static_cast<std::uint16_t>((found++)->low);
-                    interval.fall = static_cast<std::uint16_t>((found++)->low);
-                }
-                tidy(of_receiver);
-            }
-            if (closed_) refine_over_ends(receivers.subspan(first, last - first), here);
-        },
-        "finding exact times", &progress);
+void ExactTimes::refine(std::span<const trace::Receiver> receivers,
+                        std::span<LitTimes> times) const {
+    std::vector<Search> searches = searches_of(times);
+    search(receivers, searches);
+    auto found = searches.begin();
+    for (LitTimes& of_receiver : times) {
+        for (CodedInterval& interval : of_receiver) {
+            interval.rise = static_cast<std::uint16_t>((found++)->low);
+            interval.fall = static_cast<std::uint16_t>((found++)->low);
+        }
+        tidy(of_receiver);
+    }
+    if (closed_) refine_over_ends(receivers, times);
 }
 
 }  // namespace gnomon::bake

@@ -24,9 +24,9 @@ public:
     /// where rays find it, after a bisection. What is seen nowhere but in the middle of a step is
     /// left out, and where there is more than one change between two middles one of them is told.
     /// Over the ends of a closed path it is sought as between two other middles.
-    /// Depends on a receiver and its times alone. Throws Error{cancelled}.
-    void refine(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
-                Progress& progress) const;
+    /// Depends on a receiver and its times alone. Some hundred receivers have enough rays that are
+    /// alike. Runs on the calling thread.
+    void refine(std::span<const trace::Receiver> receivers, std::span<LitTimes> times) const;
 
 private:
     struct Search;

@@ -1,39 +1,19 @@
 #include "bake/light_day.h"
 
-#include <gnomon/error.h>
-
 #include "bake/ray_steps.h"
 #include "bake/unfinished.h"
 #include "base/parallel.h"
 #include "base/part_progress.h"
 
-#include <algorithm>
-#include <iterator>
+#include <tbb/enumerable_thread_specific.h>
+
 #include <utility>
 
 namespace gnomon::bake {
 
 namespace {
 
-/// Texels between two looks at whether to stop: a second or so of work.
-constexpr std::size_t kPartTexels = 1 << 16;
-
-/// Receivers whose rays one task traces: those of a step fill some batches.
-constexpr std::size_t kRayReceivers = 512;
-
 constexpr std::string_view kTask = "baking the sun";
-
-/// What the steps of a part take of its time, the rest being exact times; for the progress alone.
-constexpr double kStepsShare = 0.6;
-
-/// A full disk is no reason to lose the error that stopped the work, or the bake itself, which is
-/// smaller and may still fit.
-void save_if_possible(const Unfinished& unfinished, std::span<const LitTimes> times) {
-    try {
-        unfinished.save(times);
-    } catch (const Error&) {
-    }
-}
 
 }  // namespace
 
@@ -52,64 +32,71 @@ LightDay::LightDay(Scene scene, BakePath path, BakeOptions options, Progress& pr
     if (is_exact) exact_.emplace(tracer_, path_.to_light_ws);
 }
 
-interval::DayMasks LightDay::masks(std::span<const trace::Receiver> receivers,
-                                   Progress& progress) const {
-    if (tree_) return interval::bake(*tree_, steps_, receivers, progress);
-    interval::DayMasks masks;
-    masks.steps = steps_.steps();
-    const std::size_t words = masks.words_per_mask();
-    masks.words.resize(receivers.size() * words);
-    parallel_for(
-        receivers.size(), kRayReceivers,
-        [&](std::size_t first, std::size_t last) {
-            ray_masks(*tracer_, steps_.to_sun_ws(), receivers.subspan(first, last - first),
-                      std::span(masks.words).subspan(first * words, (last - first) * words));
-        },
-        kTask, &progress);
-    return masks;
-}
-
-std::vector<LitTimes> LightDay::times(std::span<const trace::Receiver> receivers,
-                                      Progress& progress) const {
-    const double steps_share = exact_ ? kStepsShare : 1.0;
-    PartProgress steps(progress, kTask, 0.0, steps_share);
-    const interval::DayMasks masks = this->masks(receivers, steps);
+void LightDay::find_some(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
+                         interval::AdaptiveTracer* tracer) const {
+    const auto words = static_cast<std::size_t>(steps_.words());
+    std::vector<std::uint64_t> masks(receivers.size() * words);
+    if (tracer != nullptr) {
+        tracer->trace(receivers, masks);
+    } else {
+        ray_masks(*tracer_, steps_.to_sun_ws(), receivers, masks);
+    }
     const int codes = codes_per_step(options_.bits);
-    std::vector<LitTimes> times(receivers.size());
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        for (const interval::Interval& lit : interval::intervals(masks.mask(i))) {
+        const interval::Mask mask = interval::Mask(masks).subspan(i * words, words);
+        for (const interval::Interval& lit : interval::intervals(mask)) {
             times[i].push_back({static_cast<std::uint16_t>(lit.rise * codes),
                                 static_cast<std::uint16_t>(lit.fall * codes)});
         }
     }
-    PartProgress exact(progress, kTask, steps_share, 1.0 - steps_share);
-    if (exact_) exact_->refine(receivers, times, exact);
+    if (exact_) exact_->refine(receivers, times);
+}
+
+void LightDay::find(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
+                    std::span<const std::uint8_t> done, KeptBlocks* kept,
+                    Progress& progress) const {
+    std::vector<std::size_t> open;
+    for (std::size_t number = 0; number < done.size(); ++number) {
+        if (done[number] == 0) open.push_back(number);
+    }
+    tbb::enumerable_thread_specific<interval::AdaptiveTracer> tracers(
+        [&] { return interval::AdaptiveTracer(*tree_, steps_); });
+    const double open_share = static_cast<double>(open.size()) / static_cast<double>(done.size());
+    PartProgress part(progress, kTask, 1.0 - open_share, open_share);
+    parallel_for(
+        open.size(), 1,
+        [&](std::size_t i, std::size_t) {
+            const Block block = block_of(open[i], receivers.size());
+            find_some(receivers.subspan(block.first, block.count),
+                      times.subspan(block.first, block.count), tree_ ? &tracers.local() : nullptr);
+            if (kept != nullptr) kept->add(open[i]);
+        },
+        kTask, &part);
+}
+
+std::vector<LitTimes> LightDay::times(std::span<const trace::Receiver> receivers,
+                                      Progress& progress) const {
+    std::vector<LitTimes> times(receivers.size());
+    const std::vector<std::uint8_t> none(block_count(receivers.size()), 0);
+    find(receivers, times, none, nullptr, progress);
     return times;
 }
 
 std::vector<LitTimes> LightDay::kept_times(std::span<const trace::Receiver> receivers,
                                            Progress& progress) const {
-    const bool is_kept = !options_.resume_file.empty();
+    if (options_.resume_file.empty()) return times(receivers, progress);
     const Unfinished unfinished(options_.resume_file,
-                                is_kept ? fingerprint(scene_, path_, options_, receivers) : 0,
-                                receivers.size());
-    std::vector<LitTimes> done = unfinished.load();
-    done.reserve(receivers.size());  // growing it would take three times as much
-    const auto all = static_cast<double>(receivers.size());
+                                fingerprint(scene_, path_, options_, receivers), receivers.size());
+    FoundTimes found = unfinished.load();
+    KeptBlocks kept(unfinished, found.times, found.done);
     try {
-        while (done.size() < receivers.size()) {
-            const std::size_t count = std::min(kPartTexels, receivers.size() - done.size());
-            PartProgress part(progress, kTask, static_cast<double>(done.size()) / all,
-                              static_cast<double>(count) / all);
-            std::ranges::move(times(receivers.subspan(done.size(), count), part),
-                              std::back_inserter(done));
-        }
+        find(receivers, found.times, found.done, &kept, progress);
     } catch (...) {
-        save_if_possible(unfinished, done);
+        kept.save();
         throw;
     }
-    save_if_possible(unfinished, done);
-    return done;
+    kept.save();
+    return std::move(found.times);
 }
 
 }  // namespace gnomon::bake

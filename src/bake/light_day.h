@@ -4,7 +4,11 @@
 
 #include "bake/exact_times.h"
 #include "bake/interval_codes.h"
-#include "interval/bake.h"
+#include "bake/kept_blocks.h"
+#include "interval/adaptive.h"
+#include "interval/mask.h"
+#include "interval/path.h"
+#include "interval/tree.h"
 #include "trace/receiver.h"
 #include "trace/tracer.h"
 
@@ -29,16 +33,21 @@ public:
     std::vector<LitTimes> times(std::span<const trace::Receiver> receivers,
                                 Progress& progress) const;
 
-    /// The same, found in parts. What is done goes to the options' `resume_file`, if that has a
-    /// name and there is room, when the work is stopped or fails, and when all is done; a later
-    /// call for the same begins with it. Throws Error{input} when the file is of another bake,
-    /// Error{machine} before the work when the file would not fit on its disk, Error{cancelled}.
+    /// The same, found in blocks. Those that are done go to the options' `resume_file`, if that has
+    /// a name and there is room, every half minute, when the work is stopped or fails, and when all
+    /// is done; a later call for the same begins with them. Throws Error{input} when the file is of
+    /// another bake, Error{machine} before the work when the file would not fit on its disk,
+    /// Error{cancelled}.
     std::vector<LitTimes> kept_times(std::span<const trace::Receiver> receivers,
                                      Progress& progress) const;
 
 private:
-    /// At which steps.
-    interval::DayMasks masks(std::span<const trace::Receiver> receivers, Progress& progress) const;
+    /// Finds the blocks that are not `done`.
+    void find(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
+              std::span<const std::uint8_t> done, KeptBlocks* kept, Progress& progress) const;
+    /// On the calling thread.
+    void find_some(std::span<const trace::Receiver> receivers, std::span<LitTimes> times,
+                   interval::AdaptiveTracer* tracer) const;
 
     Scene scene_;
     BakePath path_;

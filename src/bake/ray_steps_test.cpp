@@ -61,7 +61,7 @@ struct Agreement {
 class BothMethods : public testing::TestWithParam<Agreement> {};
 
 // docs/bakes.md: a hundred thousandth of the samples, where rays round at edges. Four of the
-// courtyard's 29,000 texels lie in the plane of another surface, which may or may not shade them.
+// courtyard's 20,000 texels lie in the plane of another surface, which may or may not shade them.
 TEST_P(BothMethods, AgreeButForEdges) {
     Progress silent;
     const Scene scene = make_builtin_scene(GetParam().scene);

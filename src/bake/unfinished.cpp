@@ -5,6 +5,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -20,25 +21,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the file takes for a texel of some intervals: with less free the work is not begun.
-constexpr std::uint64_t kTexel_bytes = 16;
+/// What the file takes for a texel of some intervals, twice, as the one before is there until the
+/// next is written: with less free the work is not begun.
+constexpr std::uint64_t kTexel_bytes = 2 * 16;
 
 /// What the files of all versions begin with.
 constexpr std::string_view kMagic = "gnomon part ";
 
-/// The beginning of the file. The number of intervals of each texel follows, then the intervals.
+/// The beginning of the file. A byte for each block follows, 1 where it is done; then the number of
+/// intervals of each texel of those blocks, then these intervals.
 struct Header {
-    std::array<char, 16> magic{"gnomon part 5\n"};
+    std::array<char, 16> magic{"gnomon part 6\n"};
     std::uint64_t checksum = 0;  ///< of all that follows it: CRC-32
     std::uint64_t fingerprint = 0;
-    std::uint64_t texels = 0;     ///< that are done
-    std::uint64_t intervals = 0;  ///< of all of them
+    std::uint64_t texels = 0;       ///< of the bake
+    std::uint64_t done_texels = 0;  ///< of the blocks that are done
+    std::uint64_t intervals = 0;    ///< of all of these
 };
 
 using Count = std::uint16_t;
 
 std::uint64_t file_bytes(const Header& header) {
-    return sizeof header + header.texels * sizeof(Count) + header.intervals * sizeof(CodedInterval);
+    return sizeof header + block_count(header.texels) + header.done_texels * sizeof(Count) +
+           header.intervals * sizeof(CodedInterval);
 }
 
 std::uint64_t checksum_of(std::span<const std::uint8_t> file) {
@@ -49,6 +54,23 @@ std::uint64_t checksum_of(std::span<const std::uint8_t> file) {
 template <typename T>
 void append(std::string& bytes, std::span<const T> values) {
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+/// Calls act(texel) for those of the blocks that are done.
+template <typename Act>
+void for_done(std::span<const std::uint8_t> done, std::size_t texels, const Act& act) {
+    for (std::size_t number = 0; number < done.size(); ++number) {
+        if (done[number] == 0) continue;
+        const Block block = block_of(number, texels);
+        for (std::size_t i = 0; i < block.count; ++i)
+            act(block.first + i);
+    }
+}
+
+std::uint64_t done_texels(std::span<const std::uint8_t> done, std::size_t texels) {
+    std::uint64_t count = 0;
+    for_done(done, texels, [&](std::size_t) { ++count; });
+    return count;
 }
 
 class Hash {
@@ -98,28 +120,35 @@ Unfinished::Unfinished(fs::path file, std::uint64_t fingerprint, std::size_t tex
         file_.string(), space.available, texels_, needed);
 }
 
-std::vector<LitTimes> Unfinished::load() const {
+FoundTimes Unfinished::load() const {
+    FoundTimes found;
+    found.times.resize(texels_);
+    found.done.resize(block_count(texels_), 0);
     std::error_code error;
-    if (file_.empty() || !fs::exists(file_, error)) return {};
+    if (file_.empty() || !fs::exists(file_, error)) return found;
     const std::vector<std::uint8_t> bytes = read_checked();
     Header header;
     std::memcpy(&header, bytes.data(), sizeof header);
-    std::vector<LitTimes> times(header.texels);
-    const std::uint8_t* count_at = bytes.data() + sizeof header;
-    const std::uint8_t* at = count_at + times.size() * sizeof(Count);
+    const std::uint8_t* at = bytes.data() + sizeof header;
+    std::copy_n(at, found.done.size(), found.done.begin());
+    at += found.done.size();
+    if (done_texels(found.done, texels_) != header.done_texels) fail_damaged();
+    const std::uint8_t* count_at = at;
+    at += header.done_texels * sizeof(Count);
     std::uint64_t left = header.intervals;
-    for (LitTimes& of_texel : times) {
+    for_done(found.done, texels_, [&](std::size_t texel) {
         Count count = 0;
         std::memcpy(&count, count_at, sizeof count);
         count_at += sizeof count;
         if (count > left) fail_damaged();
         left -= count;
+        LitTimes& of_texel = found.times[texel];
         of_texel.resize(count);
         std::memcpy(of_texel.data(), at, count * sizeof(CodedInterval));
         at += count * sizeof(CodedInterval);
-    }
+    });
     if (left != 0) fail_damaged();
-    return times;
+    return found;
 }
 
 std::vector<std::uint8_t> Unfinished::read_checked() const {
@@ -146,8 +175,8 @@ std::vector<std::uint8_t> Unfinished::read_checked() const {
     std::error_code error;
     // Of a texel: every other step.
     constexpr std::uint64_t kMostIntervals = (most_steps(BakeBits::sixteen) + 1) / 2;
-    const bool is_likely = header.texels <= texels_ &&
-                           header.intervals <= header.texels * kMostIntervals &&
+    const bool is_likely = header.texels == texels_ && header.done_texels <= texels_ &&
+                           header.intervals <= header.done_texels * kMostIntervals &&
                            fs::file_size(file_, error) == file_bytes(header);
     if (!is_likely) fail_damaged();
     std::vector<std::uint8_t> bytes = read_file(file_, file_bytes(header));
@@ -160,24 +189,28 @@ void Unfinished::fail_damaged() const {
                file_.string());
 }
 
-void Unfinished::save(std::span<const LitTimes> times) const {
-    if (file_.empty() || times.empty()) return;
-    Header header{.fingerprint = fingerprint_, .texels = times.size()};
-    for (const LitTimes& of_texel : times)
-        header.intervals += of_texel.size();
+void Unfinished::save(std::span<const LitTimes> times, std::span<const std::uint8_t> done) const {
+    Header header{.fingerprint = fingerprint_,
+                  .texels = times.size(),
+                  .done_texels = done_texels(done, times.size())};
+    if (file_.empty() || header.done_texels == 0) return;
+    for_done(done, times.size(),
+             [&](std::size_t texel) { header.intervals += times[texel].size(); });
     std::string bytes;
     bytes.reserve(file_bytes(header));
     append(bytes, std::span<const Header>(&header, 1));
-    for (const LitTimes& of_texel : times) {
-        const auto count = static_cast<Count>(of_texel.size());
+    append(bytes, done);
+    for_done(done, times.size(), [&](std::size_t texel) {
+        const auto count = static_cast<Count>(times[texel].size());
         append(bytes, std::span<const Count>(&count, 1));
-    }
-    for (const LitTimes& of_texel : times)
-        append(bytes, std::span<const CodedInterval>(of_texel));
+    });
+    for_done(done, times.size(), [&](std::size_t texel) {
+        append(bytes, std::span<const CodedInterval>(times[texel]));
+    });
     header.checksum =
         checksum_of({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     std::memcpy(bytes.data(), &header, sizeof header);
-    write_file(file_, bytes);
+    write_file(file_, bytes, Outlives::power_cut);
 }
 
 std::uint64_t fingerprint(const Scene& scene, const BakePath& path, const BakeOptions& options,

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +13,19 @@
 namespace gnomon {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Waits until the file is on the disk: else a power cut after its renaming could leave it empty.
+bool sync(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const bool is_synced = ::fsync(descriptor) == 0;
+    ::close(descriptor);
+    return is_synced;
+}
+
+}  // namespace
 
 std::vector<std::uint8_t> read_file(const fs::path& path, std::uint64_t max_bytes) {
     std::error_code error;
@@ -54,13 +68,16 @@ void write_whole(const fs::path& path, const std::function<void(const fs::path&)
     }
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
+void write_file(const fs::path& path, std::string_view bytes, Outlives outlives) {
     write_whole(path, [&](const fs::path& temporary) {
         errno = 0;
         std::ofstream stream(temporary, std::ios::binary);
         stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         stream.close();
-        if (!stream) fail_machine("{}: cannot be written: {}", path.string(), std::strerror(errno));
+        const bool is_written = stream && (outlives == Outlives::process || sync(temporary));
+        if (!is_written) {
+            fail_machine("{}: cannot be written: {}", path.string(), std::strerror(errno));
+        }
     });
 }
 

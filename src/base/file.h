@@ -19,7 +19,11 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uint
 void write_whole(const std::filesystem::path& path,
                  const std::function<void(const std::filesystem::path&)>& write);
 
+/// What a file must outlive once it is written. A power cut costs a wait for the disk.
+enum class Outlives { process, power_cut };
+
 /// Writes `bytes` by write_whole.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Outlives outlives = Outlives::process);
 
 }  // namespace gnomon
