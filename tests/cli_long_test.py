@@ -4,13 +4,14 @@ left of them and of comparisons when they are interrupted. GNOMON_CLI is the pat
 
 import csv
 import json
+import math
 import resource
 import signal
 import subprocess
 import sys
 import unittest
 
-from cli_case import CLI, INPUT, INTERRUPTED, MACHINE, SMALL, TIMEOUT_S, CliTest
+from cli_case import CLI, DONE, INPUT, INTERRUPTED, MACHINE, SMALL, TIMEOUT_S, CliTest, gnomon
 
 
 class Sun(CliTest):
@@ -330,6 +331,46 @@ class Bake(CliTest):
                               "-o", self.folder / "day")
         self.assertEqual(self.files(), ["day.unfinished"])
         self.assertEqual(notes.read_text(encoding="utf-8"), "chapter 1")
+
+
+class LostIntervals(CliTest):
+    """A bit of ground inside of a fence: the sun of a day is hidden there more often than textures can tell."""
+    SLATS = 120
+    FLAGS = ("--technique", "occlusion_interval_maps")
+    PARAMETERS = ("--occlusion_interval_maps.texel_size", 0.05, "--occlusion_interval_maps.fine_parts", 1)
+    VIEW = ("--camera", "eye=0,1,0.1,target=0,0,0", "--light", "sun:elevation=40,azimuth=150", *SMALL)
+
+    def scene(self, slats):
+        lines = ["v -0.1 0 -0.1", "v -0.1 0 0.1", "v 0.1 0 0.1", "v 0.1 0 -0.1", "f 1 2 3 4"]
+        for k in range(slats):
+            for bearing in (k - 0.25, k + 0.25):
+                angle = math.radians(360 / self.SLATS * bearing)
+                x, z = 2 * math.sin(angle), 2 * math.cos(angle)
+                lines += [f"v {x} 0 {z}", f"v {x} 9 {z}"]
+            lines.append("f -4 -3 -1 -2")
+        path = self.folder / "fence.obj"
+        path.write_text("\n".join(lines), encoding="utf-8")
+        return path
+
+    def render(self, slats):
+        result = gnomon("render", self.scene(slats), "-o", self.folder / "x.png", *self.FLAGS, *self.PARAMETERS,
+                        *self.VIEW)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        return [line for line in result.stderr.splitlines() if line.startswith("warning: ") and "gaps" in line]
+
+    def test_are_a_warning(self):
+        self.assertEqual(self.render(self.SLATS // 4), [])
+        self.assertRegex("".join(self.render(self.SLATS)),
+                         r"^warning: occlusion_interval_maps, sun: \d+ gaps closed for want of pairs: \d+\.\d+ % of")
+
+    def test_are_in_the_report(self):
+        told = self.assert_works("compare", self.scene(self.SLATS), "-o", self.folder / "report",
+                                 "--techniques", "occlusion_interval_maps", *self.PARAMETERS, *self.VIEW,
+                                 "--reference-samples", 4, "--frames", 1)
+        row = next(line for line in told.splitlines() if line.startswith("occlusion_interval_maps"))
+        self.assertIn("gaps closed for want of pairs", row)
+        results = json.loads((self.folder / "report" / "results.json").read_text(encoding="utf-8"))["results"]
+        self.assertIn("gaps closed for want of pairs", results[0]["note"])
 
 
 class Interrupt(CliTest):

@@ -102,11 +102,7 @@ std::string summary(const IntervalBake& bake, const std::string& folder) {
     text += fmt::format("{} texels on {} page{}, {} with sun, up to {} intervals\n", report.texels,
                         bake.pages.size(), bake.pages.size() == 1 ? "" : "s", report.lit_texels,
                         report.most_intervals);
-    if (report.closed_gaps > 0) {
-        text +=
-            fmt::format("{} gaps closed for want of pairs: {:.4f} % of the time of all texels\n",
-                        report.closed_gaps, 100.0 * report.closed_share);
-    }
+    if (report.closed_gaps > 0) text += closed_gaps_text(report) + "\n";
     return text + fmt::format("bake: {}\n", folder);
 }
 

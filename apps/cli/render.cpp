@@ -116,6 +116,12 @@ std::vector<Visibility> see_lights(Context& context, Frame& frame, const std::ve
         frame.light = light;
         if (technique) {
             technique->render(frame, visibilities.emplace_back(), progress);
+            const std::string warning = technique->last_render().warning;
+            if (!warning.empty()) {
+                progress.clear();
+                print_warning(
+                    fmt::format("{}, {}: {}", choice.front().name, light_name(light), warning));
+            }
         } else {
             visibilities.push_back(
                 trace_visibility(context, frame, {.samples = samples}, progress));

@@ -102,9 +102,12 @@ struct BakeReport {
     std::uint64_t buried_texels = 0;  ///< wholly inside of solids: they repeat a neighbour's
     int most_intervals = 0;           ///< of a texel
     std::uint64_t closed_gaps = 0;    ///< for want of pairs
-    double closed_share = 0.0;        ///< of all texels' time, lit where it is dark
+    double closed_share = 0.0;        ///< of all texels' time: lit where it is dark
     std::vector<std::string> warnings;
 };
+
+/// A sentence on the gaps that were closed, and on the error that this makes; empty when none was.
+std::string closed_gaps_text(const BakeReport& report);
 
 struct IntervalBake {
     Scene scene;                            ///< TEXCOORD_1 is the place on the page

@@ -48,7 +48,8 @@ struct TechniqueResult {
     std::vector<PassTime> passes;  ///< medians, device time
     std::uint64_t memory_bytes = 0;
     bool supported = true;
-    std::string note;  ///< why it is not supported, or what the reader must know
+    std::string note;     ///< why it is not supported, or what the reader must know
+    std::string warning;  ///< RenderStats::warning, which `note` has too
 
     Image visibility;    ///< 1 channel
     Image picture_srgb;  ///< 3 channels, this light alone

@@ -70,6 +70,7 @@ struct RenderStats {
     std::vector<PassTime> passes;    ///< device time each, in order
     std::uint64_t memory_bytes = 0;  ///< held by the technique, the scene's own buffers left out
     std::string note;                ///< what the technique chose by itself and why; often nothing
+    std::string warning;  ///< what it could not do as it was asked to, a sentence; mostly nothing
 };
 
 /// One way to answer: how much of this light does each receiver see?

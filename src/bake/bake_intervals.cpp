@@ -60,6 +60,15 @@ TexelIntervals limited(std::vector<bake::LitTimes> times, int path_codes, std::s
     return result;
 }
 
+/// Adds what the finer samples of texels lost to what the texels did.
+void add_closed(const BakeReport& samples, BakeReport& texels) {
+    const double all = static_cast<double>(texels.texels + samples.texels);
+    texels.closed_gaps += samples.closed_gaps;
+    texels.closed_share = (texels.closed_share * static_cast<double>(texels.texels) +
+                           samples.closed_share * static_cast<double>(samples.texels)) /
+                          std::max(all, 1.0);
+}
+
 /// What is under a ground can see the light past its edge when that is lowest, for this part of the
 /// path at most.
 constexpr double kMostLitBelow = 0.02;
@@ -193,7 +202,7 @@ std::size_t allowed_intervals(const BakeOptions& options) {
 
 bake::FineCells fine_cells(const lightmap::Atlas& atlas, const std::vector<IntervalPage>& pages,
                            int parts, const bake::LightDay& light, const BakeOptions& options,
-                           Progress& progress) {
+                           BakeReport& report, Progress& progress) {
     bake::FineSamples samples =
         bake::fine_samples(light.scene(), atlas, pages, parts, light.codes());
     bake::FineCells cells = std::move(samples.cells);
@@ -203,6 +212,7 @@ bake::FineCells fine_cells(const lightmap::Atlas& atlas, const std::vector<Inter
         bake::open_samples(cells, find_buried(light, day, progress));
     const TexelIntervals intervals =
         limited(std::move(day.times), light.codes(), allowed_intervals(options));
+    add_closed(intervals.report, report);
     const auto side = static_cast<unsigned>(
         std::ceil(std::sqrt(static_cast<double>(std::max<std::size_t>(sources.size(), 1)))));
     cells.samples = blank_page(side, pairs_for(intervals));
@@ -260,13 +270,20 @@ BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOpt
     baked.pages = pages_of(baked.atlas, owners, intervals);
     baked.report = std::move(intervals.report);
     if (lookup.fine_parts > 1) {
-        baked.fine =
-            fine_cells(baked.atlas, baked.pages, lookup.fine_parts, light, options, progress);
+        baked.fine = fine_cells(baked.atlas, baked.pages, lookup.fine_parts, light, options,
+                                baked.report, progress);
     }
     return baked;
 }
 
 }  // namespace bake
+
+std::string closed_gaps_text(const BakeReport& report) {
+    if (report.closed_gaps == 0) return {};
+    constexpr double kPercent = 100.0;
+    return fmt::format("{} gaps closed for want of pairs: {:.4f} % of the time of all texels",
+                       report.closed_gaps, kPercent * report.closed_share);
+}
 
 IntervalBake bake_intervals(const Scene& scene, const BakePath& path, const BakeOptions& options,
                             Progress& progress) {

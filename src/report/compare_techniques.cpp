@@ -58,22 +58,24 @@ TruthResult trace_truth(Context& context, const CompareOptions& options, Case& j
     return result;
 }
 
+void add_sentence(std::string& text, std::string_view sentence) {
+    if (!text.empty() && !sentence.empty()) text += ' ';
+    text += sentence;
+}
+
 /// What a reader must know to judge the technique fairly on this light.
 std::string supported_note(const TechniqueInfo& info, const Frame& frame) {
     const auto& materials = frame.scene.materials();
     const bool masked = std::any_of(materials.begin(), materials.end(),
                                     [](const Material& material) { return material.masked(); });
     std::string note;
-    if (masked && !frame.ignore_alpha && !info.honors_alpha) {
-        note = "Alpha masks count as solid here but not in the truth.";
-    }
-    if (!info.self_shadows) {
-        note += note.empty() ? "" : " ";
-        note += "No object casts a shadow on itself here, as in the truth they do.";
-    }
+    if (masked && !frame.ignore_alpha && !info.honors_alpha)
+        add_sentence(note, "Alpha masks count as solid here but not in the truth.");
+    if (!info.self_shadows)
+        add_sentence(note, "No object casts a shadow on itself here, as in the truth they do.");
     if (has_extent(frame.light) && info.penumbra == Penumbra::none) {
-        note += note.empty() ? "" : " ";
-        note += "Shadows are hard; the light has an extent, so the truth has penumbrae.";
+        add_sentence(note,
+                     "Shadows are hard; the light has an extent, so the truth has penumbrae.");
     }
     return note;
 }
@@ -131,11 +133,12 @@ void run_technique(Context& context, const TechniqueChoice& choice, std::span<co
             result.prepare_ms = prepare_ms;
             judge(context, report.options, cases[i], report.truths[i], *technique, progress,
                   result);
-            const std::string chosen =
-                looks_up_bake(choice)
-                    ? fmt::format("Looks up the bake: {}.", choice.bake->path.summary)
-                    : technique->last_render().note;
-            if (!chosen.empty()) result.note += (result.note.empty() ? "" : " ") + chosen;
+            const RenderStats stats = technique->last_render();
+            add_sentence(result.note, looks_up_bake(choice) ? fmt::format("Looks up the bake: {}.",
+                                                                          choice.bake->path.summary)
+                                                            : stats.note);
+            add_sentence(result.note, stats.warning);
+            result.warning = stats.warning;
         }
         report.results.push_back(std::move(result));
     }

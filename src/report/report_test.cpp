@@ -302,6 +302,19 @@ TEST(Table, HasALinePerResultAndAlignedColumns) {
     }
 }
 
+TEST(Table, SaysWhatATechniqueCouldNotDo) {
+    ComparisonReport report;
+    TechniqueResult& result = report.results.emplace_back();
+    result.technique = "one";
+    result.note = "Shadows are hard. 3 gaps closed.";
+    EXPECT_FALSE(contains(table(report), "gaps"));
+    result.warning = "3 gaps\nclosed.";
+    result.error.rmse = 0.125;
+    EXPECT_TRUE(contains(lines_of(table(report)).at(1), "0.125"));
+    EXPECT_TRUE(contains(lines_of(table(report)).at(1), "warning: 3 gaps"));
+    EXPECT_EQ(lines_of(table(report)).size(), 2u);
+}
+
 TEST(Table, GivesPercentAndAddsBothKindsOfArtefact) {
     ComparisonReport report;
     TechniqueResult& result = report.results.emplace_back();

@@ -40,15 +40,21 @@ Row cells(const TechniqueResult& result) {
 }
 
 std::string aligned(const Row& row, const std::array<std::size_t, kColumns>& widths,
-                    const std::string& remark) {
+                    std::size_t columns, const std::string& remark) {
     std::string line;
-    for (std::size_t i = 0; i < (remark.empty() ? kColumns : kTextColumns); ++i) {
+    for (std::size_t i = 0; i < columns; ++i) {
         const std::string padding(widths[i] - report::columns(row[i]), ' ');
         if (i > 0) line += "  ";
         line += i < kTextColumns ? row[i] + padding : padding + row[i];
     }
     if (!remark.empty()) line += "  " + remark;
     return line + "\n";
+}
+
+/// What stands at the end of a result's row.
+std::string remark(const TechniqueResult& result) {
+    if (!result.supported) return "not supported: " + report::printable(result.note);
+    return result.warning.empty() ? "" : "warning: " + report::printable(result.warning);
 }
 
 }  // namespace
@@ -64,12 +70,11 @@ std::string table(const ComparisonReport& report) {
         for (const Row& row : rows)
             widths[i] = std::max(widths[i], report::columns(row[i]));
     }
-    std::string text = aligned(kHeader, widths, {});
+    std::string text = aligned(kHeader, widths, kColumns, {});
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const TechniqueResult& result = report.results[i];
-        const std::string remark =
-            result.supported ? std::string() : "not supported: " + report::printable(result.note);
-        text += aligned(rows[i], widths, remark);
+        text +=
+            aligned(rows[i], widths, result.supported ? kColumns : kTextColumns, remark(result));
     }
     return text;
 }

@@ -75,6 +75,7 @@ void GpuTechnique::render_frame(const Frame& frame, Visibility& out, RenderStats
         throw;
     }
     stats.memory_bytes = memory_bytes();
+    stats.warning = warning();
     describe_texels(frame, out.impl());
 }
 

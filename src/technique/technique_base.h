@@ -68,6 +68,8 @@ protected:
     /// What record() noted of its commands for later frames is void: it threw, or they did not run.
     virtual void forget() {}
     virtual std::uint64_t memory_bytes() const = 0;
+    /// RenderStats::warning of what was rendered last.
+    virtual std::string warning() const { return {}; }
     /// Tells `out` of the texels, for techniques that have some.
     virtual void describe_texels(const Frame& frame, Visibility::Impl& out);
 

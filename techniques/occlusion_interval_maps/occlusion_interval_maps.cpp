@@ -138,6 +138,7 @@ private:
         bool ignore_alpha = false;
         int path_codes = 0;
         int fine_parts = 1;
+        std::string warning;  ///< of what the bake lost
         DeviceTexels device;
         std::shared_ptr<const FacetTable> facets;  ///< visibilities may outlive the bake
     };
@@ -248,6 +249,8 @@ private:
         occlusion_interval_maps::PackedTexels packed = occlusion_interval_maps::pack(scene, texels);
         out.path_codes = texels.path_codes;
         out.fine_parts = texels.fine.parts;
+        const std::string closed = closed_gaps_text(texels.report);
+        if (!closed.empty()) out.warning = closed + ".";
         out.device = DeviceTexels(context().device(), packed);
         out.facets = std::make_shared<const FacetTable>(std::move(packed.facets));
     }
@@ -303,6 +306,8 @@ private:
     std::uint64_t memory_bytes() const override {
         return baked_ ? baked_->device.memory_bytes() : 0;
     }
+
+    std::string warning() const override { return baked_->warning; }
 
     Options options_;
     gpu::Pipeline lookup_;
