@@ -5,6 +5,7 @@ left of them and of comparisons when they are interrupted. GNOMON_CLI is the pat
 import csv
 import json
 import math
+import re
 import resource
 import signal
 import subprocess
@@ -92,6 +93,12 @@ class Sun(CliTest):
                                  2026, "--grid", 1, *SMALL)
         self.assertIn("all 365 days", told)
 
+    def test_a_zone_has_summer_time(self):
+        for date, offset in (("2026-03-28", "+01:00"), ("2026-03-29", "+02:00")):
+            told = self.sun(*self.DAY[:2], "--date", date, "--utc-offset", "Europe/Berlin", "--texel", 0.5)
+            self.assertIn(f"{date}T", told)
+            self.assertEqual(set(re.findall(r"T[0-9:]{8}([+-][0-9:]{5})", told)), {offset})
+
     def test_polar_night_is_an_answer(self):
         told = self.sun("--place", "69.65,18.96", "--date", "2026-12-21", "--texel", 0.5)
         self.assertIn("polar night", told)
@@ -106,6 +113,8 @@ class Sun(CliTest):
         self.fails(["--step"], *self.DAY, "--step", 3)
         self.fails(["--date", "2026-02-30", "does not exist"], *place, "--date", "2026-02-30")
         self.fails(["--place", "91"], "--place", "91,0", *date)
+        self.fails(["--utc-offset", "+25", "-18:00 to +18:00"], *self.DAY, "--utc-offset", "+25")
+        self.fails(["--utc-offset", "Berlin", "Europe/Berlin\"?"], *self.DAY, "--utc-offset", "Berlin")
         self.fails(["--minutes", "1", "2 to 60"], *self.DAY, "--minutes", 1)
         self.fails(["--at-least", "25", "0 to 24"], *self.DAY, "--at-least", "25h")
         self.fails(["--grid", "1,2,3"], *self.DAY, "--grid", "1,2,3")
@@ -196,6 +205,15 @@ class Bake(CliTest):
         self.assertNotIn("clocks", told)
         self.assertEqual(json.loads(self.content()["bake.json"])["path"]["utc_offset"], "+02:00")
 
+    def test_the_clock_of_a_zone_has_summer_time(self):
+        told = self.bake("--sun", f"{self.SUN[1]},utc=Europe/Berlin")
+        self.assertIn("clocks at UTC+02:00, of Europe/Berlin on that day\n", told)
+        summer = json.loads(self.content()["bake.json"])["path"]
+        self.bake("--sun", f"{self.SUN[1]},utc=+02:00")
+        self.assertEqual(json.loads(self.content()["bake.json"])["path"], summer)
+        told = self.bake("--sun", "place=48.137,11.575,date=2026-12-21,steps=40,utc=Europe/Berlin")
+        self.assertIn("UTC+01:00", told)
+
     def test_what_is_missing_or_wrong(self):
         def fails(words, *flags):
             self.assert_fails(INPUT, words, "bake", "cube", *flags, "-o", self.folder / "day")
@@ -203,6 +221,7 @@ class Bake(CliTest):
         fails(["--sun", "--light"])
         fails(["--sun and --light are both given"], *self.SUN, "--light", light)
         fails(["--light", "path"], "--light", "steps=4")
+        fails(["--sun", "utc", "Europe/Berln", "Europe/Berlin\"?"], "--sun", f"{self.SUN[1]},utc=Europe/Berln")
         fails(["--light", "steps", "300", "255"], "--light", f"{light},steps=300")
         fails(["diameter", "-1", "0 to 180"], "--light", f"{light},diameter=-1")
         fails(["nowhere.json"], "--light", "path=nowhere.json")

@@ -61,6 +61,7 @@ PUBLIC = {
 RESERVED = [
     (re.compile(r"embree\d?/"), "Embree", {"trace"}),
     (re.compile(r"erfa"), "ERFA", {"sun"}),
+    (re.compile(r"date/"), "date", {"sun"}),
     (re.compile(r"hwy/"), "Highway", {"interval"}),
     (re.compile(r"(volk\.h|vulkan/)"), "Vulkan", ALL - BAKE - {"web"}),
 ]

@@ -85,6 +85,8 @@ class CheckIncludes(unittest.TestCase):
     def test_erfa_stays_in_sun(self):
         self.assert_fault("src/scene/a.cpp", "#include <erfa.h>", "ERFA is not for scene")
         self.assert_right("src/sun/a.cpp", "#include <erfa.h>", "#include <gnomon/light.h>")
+        self.assert_fault("src/bake/a.cpp", "#include <date/tz.h>", "date is not for bake")
+        self.assert_right("src/sun/a.cpp", "#include <date/tz.h>")
         self.assert_fault("src/scene/a.h", "#include <gnomon/sun.h>", "scene is not above sun")
 
     def test_headers_are_guarded_and_files_short(self):

@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExamples = R"(Examples:
   gnomon bake courtyard --sun place=48.137,11.575,date=2026-06-21 --texel 0.1 -o day
-  gnomon bake city.glb --sun place=52,4.36,date=2026-12-21,utc=+01:00,north=-30 --bits 16 -o winter
+  gnomon bake city.glb --sun place=52,4.36,date=2026-12-21,utc=Europe/Amsterdam --bits 16 -o winter
   gnomon bake city.glb --sun place=52.0,4.36,date=2026-12-21 --texel 0.25 -o winter --resume
   gnomon bake stage.glb --light path=sweep.json,diameter=2 --texel 0.05 -o sweep
 
---sun takes place=LATITUDE,LONGITUDE[,HEIGHT] and date=YEAR-MONTH-DAY, and may take utc=OFFSET (the
-clock; else the whole hour nearest to the sun's own time), north=DEGREES (the azimuth of true north
-in the scene) and steps=N. --light takes path=FILE.json, key frames of directions as docs/sun.md
-tells, and may take diameter=DEGREES (of the disc, default 0) and steps=N. gnomon web makes a page
-of a bake.)";
+--sun takes place=LATITUDE,LONGITUDE[,HEIGHT] and date=YEAR-MONTH-DAY, and may take utc=OFFSET or
+utc=ZONE (the clock: +02:00, or Europe/Berlin; else the whole hour nearest to the sun's own time),
+north=DEGREES (the azimuth of true north in the scene) and steps=N. --light takes path=FILE.json,
+key frames of directions as docs/sun.md tells, and may take diameter=DEGREES (of the disc, default
+0) and steps=N. gnomon web makes a page of a bake.)";
 
 struct BakeFlags {
     std::string scene, sun, light, output;
@@ -71,12 +71,16 @@ PathAndNote sun_path_of(const BakeFlags& flags) {
     options.steps = steps_of(sun, flags.bits);
     options.frame.north_deg = sun.number("north", {-360.0, 360.0, "degrees"}, 0.0);
     const std::chrono::minutes offset =
-        sun.has("utc") ? parse_utc_offset(sun.label("utc"), sun.text("utc", ""))
+        sun.has("utc") ? clock_utc_offset(sun.label("utc"), sun.text("utc", ""), date)
                        : nearest_utc_offset(place);
-    const std::string note =
-        sun.has("utc") ? ""
-                       : fmt::format("clocks at UTC{}, the sun's own nearest hour (utc=)\n",
-                                     utc_offset_text(offset));
+    const std::string clock = sun.text("utc", "");
+    std::string note;
+    if (!sun.has("utc")) {
+        note = fmt::format("clocks at UTC{}, the sun's own nearest hour (utc=)\n",
+                           utc_offset_text(offset));
+    } else if (!is_utc_offset(clock)) {
+        note = fmt::format("clocks at UTC{}, of {} on that day\n", utc_offset_text(offset), clock);
+    }
     return {bake_path(sun_path(place, date, offset, options), sun.text("place", ""),
                       sun.text("date", "")),
             note};

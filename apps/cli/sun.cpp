@@ -56,7 +56,7 @@ struct SunFlags {
     int year = 0;  ///< 0 = not given
     int step_days = 0;
     double minutes = 0.0, texel_m = 0.0;  ///< likewise
-    std::optional<std::chrono::minutes> utc_offset;
+    std::string utc_offset;               ///< or the name of a zone
     std::optional<GridFlag> grid;
     std::vector<double> at_least_h;
     double north_deg = 0.0, horizon_deg = 0.0;
@@ -112,7 +112,10 @@ SunHoursOptions options_of(const SunFlags& flags) {
     SunHoursOptions options;
     options.place = *flags.place;
     set_period(flags, options);
-    options.utc_offset = flags.utc_offset.value_or(nearest_utc_offset(*flags.place));
+    options.utc_offset = flags.utc_offset.empty()
+                             ? nearest_utc_offset(*flags.place)
+                             : clock_utc_offset("--utc-offset", flags.utc_offset, options.from);
+    if (!is_utc_offset(flags.utc_offset)) options.time_zone = flags.utc_offset;
     options.north_deg = flags.north_deg;
     options.horizon_deg = flags.horizon_deg;
     options.ignore_alpha = flags.view.ignore_alpha;
@@ -184,7 +187,7 @@ void run_sun(const SunFlags& flags, const Session& session, ConsoleProgress& pro
     const Camera camera = choose_camera(scene, flags.view, session);
     const std::vector<Job> jobs = count_hours(scene, flags, options, frame, progress);
     std::string text;
-    if (!flags.utc_offset) {
+    if (flags.utc_offset.empty()) {
         text += fmt::format("clocks at UTC{}, the sun's own nearest hour (--utc-offset)\n",
                             utc_offset_text(options.utc_offset));
     }
@@ -226,10 +229,12 @@ void add_days(CLI::App& app, SunFlags& flags) {
                "time step: a change between sun and shade errs by half of it (default 5 of a day, "
                "15 of a period, 60 of a year)")
         ->group(group);
-    add_parsed(app, "--utc-offset", "+HH:MM",
-               "of the clocks that tell dates and times (default: the hour nearest to the sun's)",
+    add_parsed(app, "--utc-offset", "+HH:MM|ZONE",
+               "of the clocks that tell dates and times, or their zone, such as Europe/Berlin "
+               "(default: the hour nearest to the sun's)",
                [&flags](const std::string& text) {
-                   flags.utc_offset = parse_utc_offset("--utc-offset", text);
+                   if (is_utc_offset(text)) parse_utc_offset("--utc-offset", text);
+                   flags.utc_offset = text;
                })
         ->group(group);
     add_number(app, "--north", flags.north_deg, kNorth,

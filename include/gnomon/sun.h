@@ -146,8 +146,22 @@ Place parse_place(std::string_view flag, std::string_view text);
 /// "2026-06-21". Dates that do not exist are errors.
 std::chrono::year_month_day parse_date(std::string_view flag, std::string_view text);
 
-/// "Z", "+02:00", "-0330" or "+2". Names of zones are no offsets: they need a date and a database.
+/// "Z", "+02:00", "-0330" or "+2". Names of zones are no offsets: they need a date.
 std::chrono::minutes parse_utc_offset(std::string_view flag, std::string_view text);
+
+/// Whether a text is meant as an offset: anything but a name.
+bool is_utc_offset(std::string_view text);
+
+/// What clocks of a zone of the IANA database, such as "Europe/Berlin", are ahead of UTC at their
+/// noon of `date`, in whole minutes. On a day on which they are put forward or back, at night, that
+/// is what they show while it is light. Suggests the nearest name for one that is none; throws
+/// Error{machine} when the machine has no such database.
+std::chrono::minutes zone_utc_offset(std::string_view flag, std::string_view zone,
+                                     std::chrono::year_month_day date);
+
+/// An offset, or a zone's on that date.
+std::chrono::minutes clock_utc_offset(std::string_view flag, std::string_view text,
+                                      std::chrono::year_month_day date);
 
 /// "2003-10-17T12:30:30-07:00"; seconds and their fraction may be left out, and the offset too when
 /// there is one to use `otherwise`.

@@ -27,6 +27,7 @@ struct SunHoursOptions {
     std::chrono::year_month_day from, to;  ///< the period, both included; a single day if equal
     int every_days = 1;                    ///< sampled: `from` and every so many days, 1 to 366
     std::chrono::minutes utc_offset{0};    ///< decides which noon belongs to a date
+    std::string time_zone = {};            ///< not empty: zone_utc_offset() of each day, instead
     double step_minutes = 5.0;             ///< 2 to 60: a day is cut into equal parts, none longer
     double north_deg = 0.0;                ///< SceneFrame::north_deg
     std::optional<Atmosphere> refraction;  ///< SunOptions::refraction

@@ -58,7 +58,10 @@ Day make_day(const SunHoursOptions& options, year_month_day date) {
     constexpr double kMinutesPerDay = 24.0 * 60.0;
     const SceneFrame frame{UpAxis::y, options.north_deg};
     Day day;
-    day.path = sun_path(options.place, date, options.utc_offset,
+    const minutes utc_offset = options.time_zone.empty() ? options.utc_offset
+                                                         : zone_utc_offset("sun hours: time_zone",
+                                                                           options.time_zone, date);
+    day.path = sun_path(options.place, date, utc_offset,
                         {.frame = frame, .horizon_deg = options.horizon_deg, .steps = 1});
     const SunTimes& times = day.path.times;
     if (day.path.steps.empty()) return day;
@@ -70,7 +73,7 @@ Day make_day(const SunHoursOptions& options, year_month_day date) {
     const auto begin = times.sunrise ? times.sunrise->utc : day.path.noon.utc - 12h;
     for (const double offset_s : even_times(0.0, times.daylight_s, count, StepPlacement::middles)) {
         const milliseconds offset(std::llround(1000.0 * offset_s));
-        const SunPosition sun = sun_position(options.place, {begin + offset, options.utc_offset},
+        const SunPosition sun = sun_position(options.place, {begin + offset, utc_offset},
                                              {.refraction = options.refraction});
         day.to_sun_ws.push_back(sky_direction_ws(sun.azimuth_deg, sun.elevation_deg, frame));
         day.hour_angles_deg.push_back(sun.hour_angle_deg);

@@ -420,6 +420,22 @@ TEST(SunHours, AreThoseOfRaysInACity) {
     RecordProperty("different", different);
 }
 
+// Clocks are put forward on 29 March: on each day they tell their own time.
+TEST(SunHours, OfAZoneMindItsSummerTimeDayByDay) {
+    const std::vector<SunSensor> open{{{0.0, 10.0, 0.0}, {0.0, 1.0, 0.0}}};
+    const Scene scene = make_builtin_scene("cube");
+    SunHoursOptions options = on_day(kEquinox, 30.0);
+    options.time_zone = "Europe/Berlin";
+    for (const auto& [date, offset] :
+         {std::pair{2026y / March / 28, "+01:00"}, {2026y / March / 29, "+02:00"}}) {
+        options.from = options.to = date;
+        const std::string told = hours_at(scene, open, options).days.summary;
+        EXPECT_NE(told.find(offset), std::string::npos) << told;
+    }
+    options.time_zone = "Europe/Berln";
+    EXPECT_THROW(hours_at(scene, open, options), Error);
+}
+
 }  // namespace
 
 }  // namespace gnomon

@@ -2,6 +2,7 @@
 #include "base/check.h"
 #include "sun/solar.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -198,10 +199,19 @@ minutes parse_utc_offset(std::string_view flag, std::string_view text) {
     if (!offset) {
         fail_input(
             "{}: \"{}\" is no UTC offset; -18:00 to +18:00 is allowed, such as +02:00, or Z "
-            "for UTC (no names of zones)",
+            "for UTC",
             flag, text);
     }
     return *offset;
+}
+
+bool is_utc_offset(std::string_view text) {
+    const bool is_letter = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
+    return !is_letter || text == "Z" || text == "z";
+}
+
+minutes clock_utc_offset(std::string_view flag, std::string_view text, year_month_day date) {
+    return is_utc_offset(text) ? parse_utc_offset(flag, text) : zone_utc_offset(flag, text, date);
 }
 
 CivilTime parse_time(std::string_view flag, std::string_view text,
