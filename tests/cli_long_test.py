@@ -80,6 +80,29 @@ class Sun(CliTest):
         self.assertIn("hours/grid_hours.csv", self.files())
         self.assertIn("hours/texels_hours.exr", self.files())
 
+    def test_grids_on_planes(self):
+        planes = self.folder / "facades.csv"
+        # South and north of the cube and before it, and through the cube.
+        planes.write_text("x,y,z,ux,uy,uz,vx,vy,vz\n-0.5,0,0.51,1,0,0,0,1,0\n0.5,0,-0.51,-1,0,0,0,1,0\n"
+                          "-0.25,0.25,0,0.5,0,0,0,0.5,0\n", encoding="utf-8")
+        told = self.sun(*self.DAY, "--grid", f"0.25,{planes}")
+        self.assertIn(" points on 3 planes, 0.25 m apart; 4 inside", told)
+        south, north, inside = ([row for row in self.rows() if row["plane"] == plane] for plane in "123")
+        self.assertEqual({(row["nx"], row["ny"], row["nz"]) for row in south}, {("0", "0", "1")})
+        self.assertEqual({row["weight"] for row in south + north}, {"1"})
+        self.assertEqual({row["weight"] for row in inside}, {"0"})
+        self.assertGreater(min(float(row["hours"]) for row in south), 8)
+        self.assertLess(max(float(row["hours"]) for row in north), 1)
+        # In coordinates of a file with Z up: a wall that faces -Y, as those that face south do.
+        wall = self.folder / "wall.obj"
+        wall.write_text("v 0 1 0\nv 4 1 0\nv 4 1 3\nv 0 1 3\nf 1 2 3 4\n", encoding="utf-8")
+        planes.write_text("0,0.9,0,4,0,0,0,0,3\n", encoding="utf-8")
+        self.assert_works("sun", wall, "--up", "z", "-o", self.folder / "hours", *self.DAY, *self.QUICK, "--grid",
+                          f"1,{planes}")
+        rows = self.rows()
+        self.assertEqual({(row["y"], row["nx"], row["ny"], row["nz"]) for row in rows}, {("0.9000", "0", "-1", "0")})
+        self.assertEqual(sorted({row["z"] for row in rows}), ["0.5000", "1.5000", "2.5000"])
+
     def test_period(self):
         told = self.sun("--place", "48.137,11.575", "--from", "2026-03-01", "--to", "2026-03-31", "--step", 10,
                         "--texel", 0.5, "--at-least", 4)
@@ -119,6 +142,7 @@ class Sun(CliTest):
         self.fails(["--at-least", "25", "0 to 24"], *self.DAY, "--at-least", "25h")
         self.fails(["--grid", "1,2,3"], *self.DAY, "--grid", "1,2,3")
         self.fails(["grid", "1e-06"], *self.DAY, "--grid", "1e-6")
+        self.fails(["nowhere.csv"], *self.DAY, "--grid", f"1,{self.folder / 'nowhere.csv'}")
         self.fails(["nowhere.csv"], *self.DAY, "--sensors", self.folder / "nowhere.csv")
         points = self.folder / "points.csv"
         points.write_text("1,2,3\n1,2\n", encoding="utf-8")

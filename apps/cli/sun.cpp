@@ -43,9 +43,13 @@ constexpr double kMinutesOfDay = 5.0;
 constexpr double kMinutesOfPeriod = 15.0;
 constexpr double kMinutesOfYear = 60.0;
 
+constexpr std::string_view kPlanesExtension = ".csv";
+constexpr double kMostPlanePoints = 1e7;  // as of one grid
+
 struct GridFlag {
     double spacing_m = 1.0;
     std::optional<double> height_m;  ///< in the file's coordinates
+    std::string planes;              ///< a file of them, in place of a height
 };
 
 struct SunFlags {
@@ -74,9 +78,16 @@ double parse_hours(std::string_view flag, std::string_view text) {
 
 GridFlag parse_grid(std::string_view text) {
     const std::vector<std::string_view> parts = split(text, ',');
-    if (parts.size() > 2) fail_usage("--grid: \"{}\" is not SPACING or SPACING,HEIGHT", text);
-    GridFlag grid{parse_number("--grid", parts[0], kSpacing), {}};
-    if (parts.size() == 2) grid.height_m = parse_number("--grid", parts[1], kHeight);
+    GridFlag grid{parse_number("--grid", parts[0], kSpacing), {}, {}};
+    if (parts.size() == 1) return grid;
+    const std::string_view rest = text.substr(parts[0].size() + 1);
+    if (rest.ends_with(kPlanesExtension)) {
+        grid.planes = rest;
+    } else if (parts.size() == 2) {
+        grid.height_m = parse_number("--grid", rest, kHeight);
+    } else {
+        fail_usage("--grid: \"{}\" is not SPACING, SPACING,HEIGHT or SPACING,FILE.csv", text);
+    }
     return grid;
 }
 
@@ -134,6 +145,23 @@ std::vector<SunSensor> load_sensors(const SunFlags& flags, const FileFrame& fram
     return sensors;
 }
 
+/// The grids on the planes of a file.
+std::vector<SunGrid> plane_grids(const GridFlag& flag, const FileFrame& frame) {
+    std::vector<SunGrid> grids;
+    double points = 0.0;
+    for (const SunPlane& plane : read_sun_planes(flag.planes)) {
+        grids.push_back(make_sun_grid({DVec3(frame.point(plane.corner_ws)),
+                                       frame.direction(plane.u_ws), frame.direction(plane.v_ws)},
+                                      flag.spacing_m));
+        points += static_cast<double>(grids.back().size.width) * grids.back().size.height;
+    }
+    if (points > kMostPlanePoints) {
+        fail_usage("--grid: {} m apart on the planes of {} there are {:.0f} points; {:.0f} at most",
+                   flag.spacing_m, flag.planes, points, kMostPlanePoints);
+    }
+    return grids;
+}
+
 SunGrid grid_of(const Scene& scene, const GridFlag& flag, const FileFrame& frame) {
     if (!flag.height_m) return make_sun_grid(scene, flag.spacing_m);
     const double h = *flag.height_m;
@@ -154,7 +182,10 @@ std::vector<Job> count_hours(const Scene& scene, const SunFlags& flags,
         const std::vector<SunSensor> sensors = load_sensors(flags, frame);
         jobs.push_back({"sensors_", "", sun_hours(scene, sensors, options, progress)});
     }
-    if (flags.grid) {
+    if (flags.grid && !flags.grid->planes.empty()) {
+        jobs.push_back(
+            {"grid_", "", sun_hours(scene, plane_grids(*flags.grid, frame), options, progress)});
+    } else if (flags.grid) {
         const SunGrid grid = grid_of(scene, *flags.grid, frame);
         const DVec3 point = frame.file_point_m(Vec3(grid.first_ws));
         jobs.push_back(
@@ -260,9 +291,10 @@ void add_points(CLI::App& app, SunFlags& flags) {
                    "points from a file, a line each: x,y,z,nx,ny,nz, or x,y,z to face up")
         ->type_name("FILE.csv")
         ->group(group);
-    add_parsed(app, "--grid", "S[,H]",
+    add_parsed(app, "--grid", "S[,H|,FILE.csv]",
                "points S metres apart on a horizontal plane, at height H of the file's coordinates "
-               "(default 1 m over the scene's lowest point)",
+               "(default 1 m over the scene's lowest point), or on planes, a line each: "
+               "x,y,z,ux,uy,uz,vx,vy,vz, a corner and two edges; sun counts on the side of u x v",
                [&flags](const std::string& text) { flags.grid = parse_grid(text); })
         ->group(group);
 }

@@ -28,15 +28,28 @@ bool is_page(std::string_view name) {
            std::ranges::all_of(name.substr(1), [](char c) { return c >= '0' && c <= '9'; });
 }
 
+/// Of each point of grids the number of its plane, from 1.
+std::vector<std::size_t> planes_of(const SunHoursResult& result) {
+    std::vector<std::size_t> planes;
+    for (std::size_t i = 0; i < result.grids.size(); ++i) {
+        const Extent size = result.grids[i].size;
+        planes.insert(planes.end(), std::size_t{size.width} * size.height, i + 1);
+    }
+    return planes;
+}
+
 }  // namespace
 
 std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) {
     const bool texels = result.kind == SunPoints::texels;
     const bool period = result.days.sampled > 1;
-    std::string text = fmt::format("x,y,z,nx,ny,nz,{},{}\n", texels ? "area_m2" : "weight",
+    const bool grid = result.kind == SunPoints::grid;
+    std::string text = fmt::format("x,y,z,nx,ny,nz,{},{}{}\n", texels ? "area_m2" : "weight",
                                    period ? "hours_per_day,hours_in_period,hours_worst_day,"
                                             "longest_per_day,longest_worst_day"
-                                          : "hours,longest");
+                                          : "hours,longest",
+                                   grid ? ",plane" : "");
+    const std::vector<std::size_t> planes = planes_of(result);
     const FileFrame turn{.z_up = frame.z_up};
     const auto out = std::back_inserter(text);
     for (std::size_t i = 0; i < result.points.size(); ++i) {
@@ -47,12 +60,14 @@ std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) 
         fmt::format_to(out, "{:.4f},{:.4f},{:.4f},{:.5g},{:.5g},{:.5g},{:.6g},", p.x, p.y, p.z, n.x,
                        n.y, n.z, result.weights[i]);
         if (period) {
-            fmt::format_to(out, "{:.3f},{:.2f},{:.3f},{:.3f},{:.3f}\n", hours.mean_h,
+            fmt::format_to(out, "{:.3f},{:.2f},{:.3f},{:.3f},{:.3f}", hours.mean_h,
                            hours.mean_h * static_cast<float>(result.days.period), hours.worst_h,
                            hours.longest_mean_h, hours.longest_worst_h);
         } else {
-            fmt::format_to(out, "{:.3f},{:.3f}\n", hours.mean_h, hours.longest_mean_h);
+            fmt::format_to(out, "{:.3f},{:.3f}", hours.mean_h, hours.longest_mean_h);
         }
+        if (grid) fmt::format_to(out, ",{}", planes[i]);
+        text += '\n';
     }
     return text;
 }

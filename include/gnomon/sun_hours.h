@@ -64,12 +64,19 @@ struct SunSensor {
     DVec3 normal_ws{0.0, 1.0, 0.0};  ///< of any length but 0
 };
 
-/// Points of a horizontal plane, row by row, -Z first, -X first: all over the scene's bounds.
+/// A rectangle, of a facade, a roof or a ground. Sun counts on the side that u × v points to.
+struct SunPlane {
+    DVec3 corner_ws{0.0};
+    DVec3 u_ws{0.0}, v_ws{0.0};  ///< from the corner along two edges, at right angles, metres
+};
+
+/// Points of a plane, row by row.
 struct SunGrid {
     double spacing_m = 1.0;
-    double height_ws_m = 0.0;
     Extent size;
     DVec3 first_ws{0.0};
+    /// Unit vectors: along a row, from row to row, and to the side on which sun counts.
+    DVec3 right_ws{1.0, 0.0, 0.0}, down_ws{0.0, 0.0, 1.0}, normal_ws{0.0, 1.0, 0.0};
 
     std::vector<SunSensor> sensors() const;
 };
@@ -84,8 +91,8 @@ struct SunHoursResult {
     SunHoursOptions options;
     SunDays days;
     SunPoints kind = SunPoints::sensors;
-    double texel_size_m = 0.0;  ///< of texels
-    SunGrid grid;               ///< of a grid
+    double texel_size_m = 0.0;   ///< of texels
+    std::vector<SunGrid> grids;  ///< of grids: their points, one grid after the other
     std::vector<SunSensor> points;
     std::vector<SunHours> hours;  ///< of each point
     std::vector<double> weights;  ///< texels: their area in m², together that of the surface;
@@ -98,8 +105,10 @@ struct SunHoursResult {
 SunHoursResult sun_hours(const Scene& scene, std::span<const SunSensor> sensors,
                          const SunHoursOptions& options, Progress& progress);
 
-/// Hours on a grid. Points without sun from which the way up leads to the back of a surface are
+/// Hours on grids. Points without sun from which the way up leads to the back of a surface are
 /// taken to be inside of a house or under the ground, and get weight 0.
+SunHoursResult sun_hours(const Scene& scene, std::span<const SunGrid> grids,
+                         const SunHoursOptions& options, Progress& progress);
 SunHoursResult sun_hours(const Scene& scene, const SunGrid& grid, const SunHoursOptions& options,
                          Progress& progress);
 
@@ -112,10 +121,15 @@ SunHoursResult sun_hours(const Scene& scene, double texel_size_m, const SunHours
 /// of ten. Throws Error{input} for a scene without area.
 double choose_texel_size_m(const Scene& scene);
 
-/// A grid over the scene's bounds, its points in the middle of equal squares. Without a height 1 m
-/// above the scene's lowest point. Throws Error{input} for a scene without triangles, a spacing
-/// that is not above 0, and more than 10^7 points.
+/// A horizontal grid over the scene's bounds, -Z first, -X first, its points in the middle of equal
+/// squares. Without a height 1 m above the scene's lowest point. Throws Error{input} for a scene
+/// without triangles, a spacing that is not above 0, and more than 10^7 points.
 SunGrid make_sun_grid(const Scene& scene, double spacing_m, std::optional<double> height_ws_m = {});
+
+/// A grid on a plane, in the same way: its squares cover it, and are as much beyond its one edge as
+/// beyond the other. Throws Error{input} for a spacing that is not above 0, for a plane whose edges
+/// are not at right angles or have no length, and for more than 10^7 points.
+SunGrid make_sun_grid(const SunPlane& plane, double spacing_m);
 
 /// Points from CSV: "x,y,z,nx,ny,nz", or "x,y,z" for those that face up (`up`), a line each, in the
 /// file's own frame; separated by commas, semicolons or tabs, with decimal points. A first line
@@ -128,6 +142,13 @@ std::vector<SunSensor> parse_sun_sensors(std::string_view text, std::string_view
 /// parse_sun_sensors of a file of at most 1 GiB.
 std::vector<SunSensor> read_sun_sensors(const std::filesystem::path& path,
                                         DVec3 up = {0.0, 1.0, 0.0});
+
+/// Planes from CSV of the same kind: a line "x,y,z,ux,uy,uz,vx,vy,vz" for each, of which there can
+/// be 1000.
+std::vector<SunPlane> parse_sun_planes(std::string_view text, std::string_view name);
+
+/// parse_sun_planes of a file of at most 1 GiB.
+std::vector<SunPlane> read_sun_planes(const std::filesystem::path& path);
 
 /// Hours over all points, or those that face one way, by their weights.
 struct SunHoursSummary {

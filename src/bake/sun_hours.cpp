@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace gnomon {
@@ -104,28 +105,6 @@ SunHoursResult hours_of_sensors(const Scene& scene, SunPoints kind,
     return result;
 }
 
-/// Looks straight up from a grid's points, one a pixel; its rows are the grid's from the last to
-/// the first.
-Camera camera_below(const Scene& scene, const SunGrid& grid) {
-    const float height_m = static_cast<float>(grid.spacing_m * grid.size.height);
-    const DVec3 center =
-        grid.first_ws +
-        0.5 * grid.spacing_m * DVec3(grid.size.width - 1.0, 0.0, grid.size.height - 1.0);
-    Camera camera;
-    camera.view_from_world = glm::mat4(1.0f);
-    // Rows: right = +X, up = +Z, backwards = -Y.
-    camera.view_from_world[0] = Vec4(1, 0, 0, 0);
-    camera.view_from_world[1] = Vec4(0, 0, -1, 0);
-    camera.view_from_world[2] = Vec4(0, 1, 0, 0);
-    const Vec3 eye(center);
-    camera.view_from_world[3] = Vec4(-eye.x, -eye.z, eye.y, 1);
-    const float rise_m = std::max(0.0f, scene.bounds().max.y - eye.y);
-    camera.near_m = 1e-6f * (1.0f + rise_m);
-    camera.ortho_height_m = height_m;
-    camera.ortho_depth_m = 1.0f + 2.0f * rise_m;
-    return camera;
-}
-
 /// Whose materials all have two sides: the backs of others are not seen, and insides show backs.
 Scene with_backs(const Scene& scene) {
     SceneData data = scene.data();
@@ -134,19 +113,21 @@ Scene with_backs(const Scene& scene) {
     return Scene(std::move(data));
 }
 
-void leave_out_insides(const Scene& scene, const SunGrid& grid, SunHoursResult& result,
-                       Progress& progress) {
+void leave_out_insides(const Scene& scene, SunHoursResult& result, Progress& progress) {
+    std::vector<std::size_t> dark;
+    std::vector<Vec3> places_ws;
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        if (result.hours[i].mean_h > 0.0f) continue;
+        dark.push_back(i);
+        places_ws.emplace_back(result.points[i].position_ws);
+    }
     const trace::Tracer tracer(with_backs(scene), result.options.ignore_alpha, progress);
-    const auto seen = tracer.visible_surfaces(camera_below(scene, grid), grid.size, progress);
-    for (unsigned row = 0; row < grid.size.height; ++row) {
-        for (unsigned column = 0; column < grid.size.width; ++column) {
-            const trace::SurfaceId above =
-                seen[std::size_t{grid.size.height - 1 - row} * grid.size.width + column];
-            const std::size_t point = std::size_t{row} * grid.size.width + column;
-            if (above.instance == trace::kNoReceiver || result.hours[point].mean_h > 0.0f) continue;
-            const DVec3 front = trace::world_triangle(scene, above).front_normal_ws();
-            if (front.y > 0.0) result.weights[point] = 0.0;
-        }
+    const float near_m = 1e-6f * (1.0f + scene.bounds().size().y);  // what it stands on is no roof
+    const auto above = tracer.first_seen(places_ws, Vec3(0.0f, 1.0f, 0.0f), near_m, progress);
+    for (std::size_t i = 0; i < dark.size(); ++i) {
+        if (above[i].instance == trace::kNoReceiver) continue;
+        const DVec3 front = trace::world_triangle(scene, above[i]).front_normal_ws();
+        if (front.y > 0.0) result.weights[dark[i]] = 0.0;
     }
 }
 
@@ -157,13 +138,20 @@ SunHoursResult sun_hours(const Scene& scene, std::span<const SunSensor> sensors,
     return hours_of_sensors(scene, SunPoints::sensors, sensors, options, progress);
 }
 
+SunHoursResult sun_hours(const Scene& scene, std::span<const SunGrid> grids,
+                         const SunHoursOptions& options, Progress& progress) {
+    std::vector<SunSensor> sensors;
+    for (const SunGrid& grid : grids)
+        std::ranges::copy(grid.sensors(), std::back_inserter(sensors));
+    SunHoursResult result = hours_of_sensors(scene, SunPoints::grid, sensors, options, progress);
+    result.grids.assign(grids.begin(), grids.end());
+    leave_out_insides(scene, result, progress);
+    return result;
+}
+
 SunHoursResult sun_hours(const Scene& scene, const SunGrid& grid, const SunHoursOptions& options,
                          Progress& progress) {
-    SunHoursResult result =
-        hours_of_sensors(scene, SunPoints::grid, grid.sensors(), options, progress);
-    result.grid = grid;
-    leave_out_insides(scene, grid, result, progress);
-    return result;
+    return sun_hours(scene, std::span(&grid, 1), options, progress);
 }
 
 SunHoursResult sun_hours(const Scene& scene, double texel_size_m, const SunHoursOptions& options,

@@ -95,25 +95,41 @@ private:
         return !b.exists() || glm::dot(a.normal_ws, b.normal_ws) < kEdgeCosine;
     }
 
-    /// Of the grid's square that is before the surface; in a parallel picture of any, as plans cut
-    /// the scene at the grid's height. Else -1.
+    /// Of the nearest grid's square that is before the surface; in a parallel picture of any, as
+    /// plans cut the scene at the grid's height. Else -1.
     float grid_hours(const Receiver& seen, unsigned x, unsigned y) const {
-        const SunGrid& grid = result_.grid;
         const auto [origin, direction] = rays_(x + 0.5, y + 0.5);
-        const double t = (grid.height_ws_m - origin.y) / direction.y;
-        if (!(t > 0.0) || !std::isfinite(t)) return bake::kNoSurface_h;
         const bool plan = camera_.ortho_height_m > 0.0f;
-        if (!plan && seen.exists() &&
-            glm::dot(DVec3(seen.position_ws) - origin - t * direction, direction) < 0.0) {
-            return bake::kNoSurface_h;
+        double nearest = std::numeric_limits<double>::infinity();
+        if (!plan && seen.exists())
+            nearest = glm::dot(DVec3(seen.position_ws) - origin, direction) /
+                      glm::dot(direction, direction);
+        float hours = bake::kNoSurface_h;
+        std::size_t first_point = 0;
+        for (const SunGrid& grid : result_.grids) {
+            const double t = glm::dot(grid.first_ws - origin, grid.normal_ws) /
+                             glm::dot(direction, grid.normal_ws);
+            if (t > 0.0 && t <= nearest && std::isfinite(t)) {
+                const float there = square_hours(grid, first_point, origin + t * direction);
+                if (there >= 0.0f) {
+                    hours = there;
+                    nearest = t;
+                }
+            }
+            first_point += std::size_t{grid.size.width} * grid.size.height;
         }
-        const DVec3 cell = (origin + t * direction - grid.first_ws) / grid.spacing_m + 0.5;
-        if (cell.x < 0.0 || cell.z < 0.0 || cell.x >= grid.size.width ||
-            cell.z >= grid.size.height) {
+        return hours;
+    }
+
+    /// At a point of the grid's plane.
+    float square_hours(const SunGrid& grid, std::size_t first_point, DVec3 point_ws) const {
+        const DVec3 from_first = (point_ws - grid.first_ws) / grid.spacing_m;
+        const double column = glm::dot(from_first, grid.right_ws) + 0.5;
+        const double row = glm::dot(from_first, grid.down_ws) + 0.5;
+        if (column < 0.0 || row < 0.0 || column >= grid.size.width || row >= grid.size.height)
             return bake::kNoSurface_h;
-        }
-        const std::size_t point =
-            static_cast<std::size_t>(cell.z) * grid.size.width + static_cast<std::size_t>(cell.x);
+        const std::size_t point = first_point + static_cast<std::size_t>(row) * grid.size.width +
+                                  static_cast<std::size_t>(column);
         return result_.weights[point] > 0.0 ? result_.hours[point].mean_h : bake::kNoSurface_h;
     }
 

@@ -80,9 +80,13 @@ std::string points_text(const SunHoursResult& result) {
         return fmt::format("{} texels of {:.4g} m", count, result.texel_size_m);
     if (result.kind == SunPoints::sensors) return fmt::format("{} points", count);
     const auto left_out = std::ranges::count(result.weights, 0.0);
+    const SunGrid& first = result.grids.front();
+    const std::string points =
+        result.grids.size() == 1
+            ? fmt::format("{} x {} points", first.size.width, first.size.height)
+            : fmt::format("{} points on {} planes", count, result.grids.size());
     return fmt::format(
-        "{} x {} points, {:.4g} m apart{}", result.grid.size.width, result.grid.size.height,
-        result.grid.spacing_m,
+        "{}, {:.4g} m apart{}", points, first.spacing_m,
         left_out > 0 ? fmt::format("; {} inside of things are left out", left_out) : std::string());
 }
 

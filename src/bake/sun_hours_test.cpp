@@ -354,7 +354,7 @@ TEST(SunHours, GridLeavesOutInsides) {
         }
         EXPECT_EQ(summarize(result).front().points, 144u - 16u);
     }
-    EXPECT_EQ(make_sun_grid(scene, 0.5).height_ws_m, 0.0) << "1 m over the lowest point";
+    EXPECT_EQ(make_sun_grid(scene, 0.5).first_ws.y, 0.0) << "1 m over the lowest point";
 }
 
 TEST(SunHours, OptionsOutOfRangeAreErrors) {

@@ -93,5 +93,40 @@ TEST(SunSensorsCsv, ErrorsTellTheBeginningOfALongLine) {
     EXPECT_LT(told.size(), 400u);
 }
 
+TEST(SunPlanesCsv, AreACornerAndTwoEdges) {
+    const std::vector<SunPlane> planes = parse_sun_planes(
+        "# south, east\nvx,vy,vz,ux,uy,uz,x,y,z\n0,3,0,8,0,0,1,2,3\n0,3,0,0,0,-4,9,2,3\n", "p.csv");
+    ASSERT_EQ(planes.size(), 2u);
+    EXPECT_EQ(planes[0].corner_ws, DVec3(1, 2, 3));
+    EXPECT_EQ(planes[0].u_ws, DVec3(8, 0, 0));
+    EXPECT_EQ(planes[0].v_ws, DVec3(0, 3, 0));
+    EXPECT_EQ(planes[1].u_ws, DVec3(0, 0, -4));
+    EXPECT_EQ(parse_sun_planes("1;2;3;8;0;0;0;3;0", "p.csv").size(), 1u);
+}
+
+TEST(SunPlanesCsv, ErrorsNameTheLineAndTheWayOut) {
+    struct Case {
+        const char *text, *fault;
+    };
+    for (const auto& [text, fault] :
+         {Case{"1,2,3\n", "p.csv, line 1: there are 3 values in: 1,2,3; a line is x,y,z,ux"},
+          {"x,y,z\n1,2,3\n", "line 1: columns are missing in: x,y,z; columns are x, y, z, ux"},
+          {"x,y,z,nx,ny,nz\n", "line 1: \"nx\" is no column"},
+          {"0,0,0,1,0,0,1,1,0\n", "line 1: the edges make no rectangle"},
+          {"0,0,0,1,0,0,0,0,0\n", "must have a length and be at right angles"},
+          {"", "p.csv: has no planes"}}) {
+        try {
+            parse_sun_planes(text, "p.csv");
+            ADD_FAILURE() << text;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(fault), std::string::npos) << error.what();
+        }
+    }
+    std::string many;
+    for (int i = 0; i < 1001; ++i)
+        many += "0,0,0,1,0,0,0,1,0\n";
+    EXPECT_THROW(parse_sun_planes(many, "p.csv"), Error);
+}
+
 }  // namespace
 }  // namespace gnomon

@@ -273,4 +273,19 @@ std::vector<SurfaceId> Tracer::visible_surfaces(const Camera& camera, Extent siz
     return surfaces;
 }
 
+std::vector<SurfaceId> Tracer::first_seen(std::span<const Vec3> from_ws, Vec3 direction_ws,
+                                          float t_min, Progress& progress) const {
+    std::vector<SurfaceId> surfaces(from_ws.size());
+    parallel_for(
+        from_ws.size(), kRaysPerTask,
+        [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                surfaces[i] = caster_->first_seen(from_ws[i], direction_ws, t_min,
+                                                  std::numeric_limits<float>::infinity());
+            }
+        },
+        "tracing rays from points", &progress);
+    return surfaces;
+}
+
 }  // namespace gnomon::trace

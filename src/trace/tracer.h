@@ -52,6 +52,11 @@ public:
     std::vector<SurfaceId> visible_surfaces(const Camera& camera, Extent size,
                                             Progress& progress) const;
 
+    /// What is seen first, in the same way, from each place along a direction, from `t_min` times
+    /// it on. Throws Error{cancelled}.
+    std::vector<SurfaceId> first_seen(std::span<const Vec3> from_ws, Vec3 direction_ws, float t_min,
+                                      Progress& progress) const;
+
 private:
     Scene scene_;
     std::unique_ptr<const Caster> caster_;
