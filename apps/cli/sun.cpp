@@ -212,6 +212,7 @@ void run_sun(const SunFlags& flags, const Session& session, ConsoleProgress& pro
     require_shared_folder("-o", flags.output);
     SunHoursOptions options = options_of(flags);
     options.threads = session.globals.threads;
+    options.more_bytes = sun_hours_picture_bytes(flags.view.size);
 
     const Scene scene = load(flags.view.scene, session, progress);
     const FileFrame frame = file_frame(scene, flags.view.scene, session);

@@ -2,11 +2,12 @@
 
 #include <gnomon/error.h>
 
-#include "output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <iterator>
 #include <string_view>
 #include <system_error>
@@ -28,30 +29,42 @@ bool is_page(std::string_view name) {
            std::ranges::all_of(name.substr(1), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Of each point of grids the number of its plane, from 1.
-std::vector<std::size_t> planes_of(const SunHoursResult& result) {
-    std::vector<std::size_t> planes;
-    for (std::size_t i = 0; i < result.grids.size(); ++i) {
-        const Extent size = result.grids[i].size;
-        planes.insert(planes.end(), std::size_t{size.width} * size.height, i + 1);
+/// Of points that come one after the other, the number of each's plane, from 1.
+class PlaneNumbers {
+public:
+    explicit PlaneNumbers(const std::vector<SunGrid>& grids) : grids_(grids) {}
+    std::size_t next() {
+        for (; left_ == 0; ++number_) {
+            const Extent size = grids_[number_].size;
+            left_ = std::size_t{size.width} * size.height;
+        }
+        --left_;
+        return number_;
     }
-    return planes;
-}
+
+private:
+    const std::vector<SunGrid>& grids_;
+    std::size_t number_ = 0, left_ = 0;
+};
 
 }  // namespace
 
-std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) {
+void write_sun_hours_csv(const fs::path& path, const SunHoursResult& result,
+                         const FileFrame& frame) {
+    constexpr std::size_t kPiece_bytes = 1 << 20;  // of a file that can be as large as the result
     const bool texels = result.kind == SunPoints::texels;
     const bool period = result.days.sampled > 1;
     const bool grid = result.kind == SunPoints::grid;
+    errno = 0;
+    std::ofstream stream(path, std::ios::binary);
     std::string text = fmt::format("x,y,z,nx,ny,nz,{},{}{}\n", texels ? "area_m2" : "weight",
                                    period ? "hours_per_day,hours_in_period,hours_worst_day,"
                                             "longest_per_day,longest_worst_day"
                                           : "hours,longest",
                                    grid ? ",plane" : "");
-    const std::vector<std::size_t> planes = planes_of(result);
     const FileFrame turn{.z_up = frame.z_up};
     const auto out = std::back_inserter(text);
+    PlaneNumbers planes(result.grids);
     for (std::size_t i = 0; i < result.points.size(); ++i) {
         const SunSensor& point = result.points[i];
         const DVec3 p = frame.file_point_m(Vec3(point.position_ws));
@@ -66,10 +79,18 @@ std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame) 
         } else {
             fmt::format_to(out, "{:.3f},{:.3f}", hours.mean_h, hours.longest_mean_h);
         }
-        if (grid) fmt::format_to(out, ",{}", planes[i]);
+        if (grid) fmt::format_to(out, ",{}", planes.next());
         text += '\n';
+        if (text.size() < kPiece_bytes) continue;
+        stream << text;
+        text.clear();
     }
-    return text;
+    stream << text;
+    stream.close();
+    if (!stream) {
+        throw Error(ErrorKind::machine,
+                    fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    }
 }
 
 void add_sun_hours(StagedFiles& files, const std::string& prefix, const Scene& scene,
@@ -78,10 +99,9 @@ void add_sun_hours(StagedFiles& files, const std::string& prefix, const Scene& s
     const Image top = sun_hours_picture(scene, result, top_camera(scene, size), size, progress);
     const Image view = sun_hours_picture(scene, result, camera, size, progress);
     const std::vector<Image> pages = sun_hours_pages(result);
-    const std::string csv = sun_hours_csv(result, frame);
     if (progress.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
 
-    write_text(files.add(prefix + "hours.csv"), csv);
+    write_sun_hours_csv(files.add(prefix + "hours.csv"), result, frame);
     for (std::size_t page = 0; page < pages.size(); ++page) {
         const std::string number = pages.size() > 1 ? fmt::format(".{}", page) : std::string();
         write_exr(files.add(fmt::format("{}hours{}.exr", prefix, number)), pages[page]);

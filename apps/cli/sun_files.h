@@ -12,8 +12,10 @@
 /// What `gnomon sun` leaves in its folder.
 namespace gnomon::cli {
 
-/// A line for each point: where it is and faces, in the file's coordinates, and its hours.
-std::string sun_hours_csv(const SunHoursResult& result, const FileFrame& frame);
+/// A line for each point: where it is and faces, in the file's coordinates, and its hours. Throws
+/// Error{machine}.
+void write_sun_hours_csv(const std::filesystem::path& path, const SunHoursResult& result,
+                         const FileFrame& frame);
 
 /// Adds files, whose names begin with `prefix`.
 void add_sun_hours(StagedFiles& files, const std::string& prefix, const Scene& scene,

@@ -35,6 +35,8 @@ struct SunHoursOptions {
     bool ignore_alpha = false;             ///< alpha masks count as solid
     bool back_sides = true;                ///< texels on the backs that light can reach, too
     int threads = 0;                       ///< 0 = all cores
+    std::uint64_t memory_limit_bytes = 0;  ///< of hours on surfaces; 0 = the machine's memory
+    std::uint64_t more_bytes = 0;          ///< what the caller will hold besides, as pictures
 };
 
 /// Hours of sun at a point. Of a single day: `mean_h` and `worst_h` are equal, and so are
@@ -113,7 +115,8 @@ SunHoursResult sun_hours(const Scene& scene, const SunGrid& grid, const SunHours
                          Progress& progress);
 
 /// Hours on all surfaces, at the texels of a light map: on fronts, and on the backs that light can
-/// reach. Throws besides what a light map throws that does not fit.
+/// reach. Throws besides Error{input} before the work when all that is held of it does not fit in
+/// memory, naming a size that would.
 SunHoursResult sun_hours(const Scene& scene, double texel_size_m, const SunHoursOptions& options,
                          Progress& progress);
 
@@ -181,5 +184,8 @@ Camera top_camera(const Scene& scene, Extent size);
 /// Throws Error{cancelled}.
 Image sun_hours_picture(const Scene& scene, const SunHoursResult& result, const Camera& camera,
                         Extent size, Progress& progress);
+
+/// What that takes while it is made.
+std::uint64_t sun_hours_picture_bytes(Extent size);
 
 }  // namespace gnomon

@@ -83,6 +83,24 @@ std::vector<Receiver> receivers_at(std::span<const SunSensor> sensors) {
     return receivers;
 }
 
+/// What is held of a texel besides the light map's part: where it is asked, and the result.
+constexpr std::uint64_t kTexel_bytes =
+    sizeof(Receiver) + sizeof(SunHours) + sizeof(SunSensor) + sizeof(double);
+
+/// Of a place on a page: its hours, those with neighbours' values, and where such come from.
+constexpr std::uint64_t kPlace_bytes = 2 * sizeof(float) + sizeof(std::uint32_t);
+
+/// Of a part's receivers while they are counted, and of triangles, whose places on the pages are
+/// looked up by both sides. Trees of the scene take no more than the light map's own work on
+/// triangles, which is done by then.
+std::uint64_t other_bytes(const Scene& scene, const SunCalendar& calendar) {
+    std::size_t most_words = 0;
+    for (const DayGroup& group : calendar.groups)
+        most_words = std::max(most_words, (group.to_sun_ws.size() + 63) / 64);
+    return kReceiversPerPart * (most_words * sizeof(std::uint64_t) + sizeof(HourSums)) +
+           2 * sizeof(std::uint32_t) * scene.triangle_count();
+}
+
 SunHoursResult begin(const Scene& scene, SunPoints kind, const SunHoursOptions& options) {
     SunHoursResult result;
     result.scene = scene.source();
@@ -161,8 +179,15 @@ SunHoursResult sun_hours(const Scene& scene, double texel_size_m, const SunHours
     const SunCalendar calendar = bake::make_calendar(options, progress);
     result.days = calendar.days;
     result.texel_size_m = texel_size_m;
-    lightmap::Atlas atlas = lightmap::make_atlas(
-        scene, {.texel_size_m = texel_size_m, .back_sides = options.back_sides}, progress);
+    lightmap::Atlas atlas =
+        lightmap::make_atlas(scene,
+                             {.texel_size_m = texel_size_m,
+                              .back_sides = options.back_sides,
+                              .memory_limit_bytes = options.memory_limit_bytes,
+                              .more_texel_bytes = kTexel_bytes,
+                              .more_place_bytes = kPlace_bytes,
+                              .more_bytes = other_bytes(scene, calendar) + options.more_bytes},
+                             progress);
     const lightmap::Texels texels = lightmap::make_texels(scene, atlas, progress);
     const std::vector<Receiver> receivers = bake::texel_receivers(atlas, texels);
     result.hours = count(scene, receivers, calendar, options.ignore_alpha, progress);

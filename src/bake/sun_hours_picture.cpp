@@ -218,6 +218,14 @@ Camera top_camera(const Scene& scene, Extent size) {
     return camera;
 }
 
+std::uint64_t sun_hours_picture_bytes(Extent size) {
+    constexpr std::uint64_t kColor_bytes = 3 * sizeof(float);
+    constexpr std::uint64_t kSample_bytes =
+        sizeof(trace::SurfaceId) + sizeof(Receiver) + kColor_bytes;
+    return std::uint64_t{size.width} * size.height *
+           (kSamples * kSamples * kSample_bytes + kColor_bytes);
+}
+
 Image sun_hours_picture(const Scene& scene, const SunHoursResult& result, const Camera& camera,
                         Extent size, Progress& progress) {
     const bake::ThreadLimit limit(result.options.threads);

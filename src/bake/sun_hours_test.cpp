@@ -4,6 +4,7 @@
 #include "bake/legend.h"
 #include "bake/texel_receivers.h"
 #include "interval/test_days.h"
+#include "lightmap/atlas.h"
 #include "trace/test_scenes.h"
 #include "trace/tracer.h"
 
@@ -355,6 +356,25 @@ TEST(SunHours, GridLeavesOutInsides) {
         EXPECT_EQ(summarize(result).front().points, 144u - 16u);
     }
     EXPECT_EQ(make_sun_grid(scene, 0.5).first_ws.y, 0.0) << "1 m over the lowest point";
+}
+
+TEST(SunHours, ThatNeedMoreMemoryThanThereIsAreRefusedBeforeTheyStart) {
+    const Scene scene = make_builtin_scene("courtyard");
+    SunHoursOptions options = on_day(kEquinox, 60.0);
+    const auto told = [&] {
+        try {
+            hours_on_surface(scene, 0.05, options);
+            return std::string("no error");
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+    };
+    // Twice what the light map alone takes.
+    options.memory_limit_bytes = 2 * lightmap::estimate(scene, {.texel_size_m = 0.05}).bytes;
+    EXPECT_NE(told().find("memory_limit_bytes allows"), std::string::npos) << told();
+    options.memory_limit_bytes = std::uint64_t{1} << 40;
+    options.more_bytes = std::uint64_t{1} << 41;  // of pictures
+    EXPECT_NE(told().find("memory_limit_bytes allows"), std::string::npos) << told();
 }
 
 TEST(SunHours, OptionsOutOfRangeAreErrors) {

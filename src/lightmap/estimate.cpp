@@ -117,7 +117,8 @@ Estimate estimate_at(const Survey& survey, const Options& options, double texel_
     estimate.page_side_texels =
         kPageStep * static_cast<unsigned>(std::ceil(std::sqrt(std::min(packed, page)) / kPageStep));
     estimate.page_side_texels = std::min(estimate.page_side_texels, options.max_page_texels);
-    const double more = touched * static_cast<double>(options.more_texel_bytes) +
+    const double more = static_cast<double>(options.more_bytes) +
+                        touched * static_cast<double>(options.more_texel_bytes) +
                         packed * static_cast<double>(options.more_place_bytes);
     estimate.bytes =
         whole(more + touched * (sizeof(Texel) + sizeof(Tile) / kTileTexels) +

@@ -98,6 +98,8 @@ Json json_of(std::string_view text, std::string_view name) {
         const auto stop =
             text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
         fail_input("{}: no valid JSON at line {}", name, 1 + std::count(text.begin(), stop, '\n'));
+    } catch (const Json::exception&) {
+        fail_input("{}: holds a number that is too large", name);  // all that parsing can find else
     }
 }
 

@@ -107,6 +107,8 @@ TEST(LightPathFile, NamesTheFault) {
         EXPECT_NE(error_of(json).find(fault), std::string::npos) << error_of(json);
     };
     expect_fault("{\n\"kind\": ,}", "no valid JSON at line 2");
+    expect_fault(R"({"kind": "direction", "keys": [{"time": 1e999, "value": [0, 1, 0]}]})",
+                 "holds a number that is too large");
     expect_fault("[]", "must be an object");
     expect_fault(R"({"keys": []})", "\"kind\" is missing");
     expect_fault(R"({"kind": "directon", "keys": []})", "did you mean \"direction\"?");
