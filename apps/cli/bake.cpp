@@ -161,11 +161,11 @@ void run_bake(const BakeFlags& flags, const Session& session, ConsoleProgress& p
                         .most_pairs = flags.pairs,
                         .ignore_alpha = flags.ignore_alpha};
     const Scene scene = load(flags.scene, session, progress);
+    options.texel_option = "--texel";
     options.resume_file = part;
     std::error_code ignored;
     try {
-        const IntervalBake bake =
-            naming_texel_flag([&] { return bake_intervals(scene, path, options, progress); });
+        const IntervalBake bake = bake_intervals(scene, path, options, progress);
         progress.clear();
         for (const std::string& warning : bake.report.warnings)
             print_warning(warning);

@@ -200,7 +200,7 @@ std::vector<Job> count_hours(const Scene& scene, const SunFlags& flags,
         jobs.push_back(
             {"texels_",
              given ? "" : fmt::format("--texel {:.4g} was chosen from the scene's area\n", texel_m),
-             naming_texel_flag([&] { return sun_hours(scene, texel_m, options, progress); })});
+             sun_hours(scene, texel_m, options, progress)});
     }
     if (jobs.size() == 1) jobs.front().prefix.clear();
     return jobs;
@@ -212,6 +212,7 @@ void run_sun(const SunFlags& flags, const Session& session, ConsoleProgress& pro
     require_shared_folder("-o", flags.output);
     SunHoursOptions options = options_of(flags);
     options.threads = session.globals.threads;
+    options.texel_option = "--texel";
     options.more_bytes = sun_hours_picture_bytes(flags.view.size);
 
     const Scene scene = load(flags.view.scene, session, progress);

@@ -75,7 +75,8 @@ struct BakeOptions {
     BakeMethod method = BakeMethod::interval_traversal;
     int most_pairs = 4;  ///< of textures; each pair holds four intervals; 1 to 16
     bool ignore_alpha = false;
-    std::uint64_t memory_limit_bytes = 0;  ///< 0 = the machine's memory
+    std::uint64_t memory_limit_bytes = 0;       ///< 0 = the machine's memory
+    std::string texel_option = "texel_size_m";  ///< what errors call the size: as its user does
     /// Where a bake keeps what it has when it is interrupted, and when it is done: to be removed
     /// once write_bake() has worked, because without it that begins here again. Empty: nowhere.
     std::filesystem::path resume_file;

@@ -37,6 +37,7 @@ struct SunHoursOptions {
     int threads = 0;                       ///< 0 = all cores
     std::uint64_t memory_limit_bytes = 0;  ///< of hours on surfaces; 0 = the machine's memory
     std::uint64_t more_bytes = 0;          ///< what the caller will hold besides, as pictures
+    std::string texel_option = "texel_size_m";  ///< what errors call the size: as its user does
 };
 
 /// Hours of sun at a point. Of a single day: `mean_h` and `worst_h` are equal, and so are

@@ -251,6 +251,7 @@ BakedTexels baked_texels(const Scene& scene, const BakePath& path, const BakeOpt
          .memory_limit_bytes = options.memory_limit_bytes,
          .more_texel_bytes = kTexel_bytes,
          .more_place_bytes = place_bytes(options),
+         .texel_option = options.texel_option,
          .to_light_ws = lookup.lit_sides_only ? path.to_light_ws : std::vector<DVec3>()},
         progress);
     const lightmap::Texels texels = lightmap::make_texels(scene, baked.atlas, progress);

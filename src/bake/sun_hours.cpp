@@ -186,7 +186,8 @@ SunHoursResult sun_hours(const Scene& scene, double texel_size_m, const SunHours
                               .memory_limit_bytes = options.memory_limit_bytes,
                               .more_texel_bytes = kTexel_bytes,
                               .more_place_bytes = kPlace_bytes,
-                              .more_bytes = other_bytes(scene, calendar) + options.more_bytes},
+                              .more_bytes = other_bytes(scene, calendar) + options.more_bytes,
+                              .texel_option = options.texel_option},
                              progress);
     const lightmap::Texels texels = lightmap::make_texels(scene, atlas, progress);
     const std::vector<Receiver> receivers = bake::texel_receivers(atlas, texels);

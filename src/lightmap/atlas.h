@@ -24,7 +24,8 @@ struct Options {
     std::uint64_t memory_limit_bytes = 0;  ///< 0 = the machine's memory
     /// What is to be held besides at the same time: of each texel, and of each place of a page.
     std::uint64_t more_texel_bytes = 0, more_place_bytes = 0;
-    std::uint64_t more_bytes = 0;  ///< likewise, however many there are
+    std::uint64_t more_bytes = 0;               ///< likewise, however many there are
+    std::string texel_option = "texel_size_m";  ///< what errors call the size: as its user does
     /// Where light can come from: sides that face none of it get no texels. Empty: from anywhere.
     std::vector<DVec3> to_light_ws = {};
 };

@@ -199,6 +199,11 @@ TEST(Atlas, AHugeRequestIsRefusedWithASizeThatFits) {
     EXPECT_LE(estimate(scene, options).bytes, options.memory_limit_bytes);
     options.memory_limit_bytes = 1000;
     EXPECT_NE(error_of(scene, options).find("no texel_size_m would fit"), std::string::npos);
+    options.texel_option = "--texel";
+    EXPECT_NE(error_of(scene, options).find("no --texel would fit"), std::string::npos);
+    options.texel_size_m = -1.0;
+    EXPECT_NE(error_of(scene, options).find("light map: --texel is -1; it must be in"),
+              std::string::npos);
 }
 
 TEST(Atlas, EstimatesCountWhatIsHeldBesides) {

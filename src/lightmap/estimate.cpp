@@ -46,7 +46,7 @@ void validate(const Options& options) {
         if (value >= least && value <= greatest) return;  // written so that NaN fails
         fail_input("light map: {} is {}; it must be in [{}, {}]", name, value, least, greatest);
     };
-    require("texel_size_m", options.texel_size_m, 1e-6, kMaxTexelSize_m);
+    require(options.texel_option, options.texel_size_m, 1e-6, kMaxTexelSize_m);
     require("padding_texels", options.padding_texels, 0, 64);
     require("max_page_texels", options.max_page_texels, 16, 32'768);
     require("chart_normal_deg", options.chart_normal_deg, 0, 60);
@@ -166,13 +166,13 @@ Estimate require_fit(const Scene& scene, const Options& options, Progress& progr
     if (estimate.bytes <= limit) return estimate;
     constexpr double kMiB = 1024.0 * 1024.0;
     const double texel_size_m = fitting_texel_size_m(found, options, limit);
-    const std::string advice = texel_size_m > 0.0
-                                   ? fmt::format("texel_size_m {:.4g} would fit", texel_size_m)
-                                   : "no texel_size_m would fit";
+    const std::string advice =
+        texel_size_m > 0.0 ? fmt::format("{} {:.4g} would fit", options.texel_option, texel_size_m)
+                           : fmt::format("no {} would fit", options.texel_option);
     fail_input(
-        "light map: texel_size_m {} makes {} texels on {} pages, which take {:.0f} MiB; {} "
+        "light map: {} {} makes {} texels on {} pages, which take {:.0f} MiB; {} "
         "{:.0f} MiB: {}",
-        options.texel_size_m, estimate.texels, estimate.pages,
+        options.texel_option, options.texel_size_m, estimate.texels, estimate.pages,
         static_cast<double>(estimate.bytes) / kMiB,
         options.memory_limit_bytes > 0 ? "memory_limit_bytes allows" : "this machine has",
         static_cast<double>(limit) / kMiB, advice);

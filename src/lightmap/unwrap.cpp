@@ -92,9 +92,9 @@ private:
         if (side_m <= max_chart_m(options_)) return;
         fail_input(
             "mesh \"{}\": a triangle of {:.4g} x {:.4g} m is larger than a page of {} texels "
-            "of {} m; texel_size_m must be at least {:.4g}",
+            "of {} m; {} must be at least {:.4g}",
             mesh_.name, side_m, chart.size_m.y, options_.max_page_texels, options_.texel_size_m,
-            1.001 * side_m / max_chart_m(options_) * options_.texel_size_m);
+            options_.texel_option, 1.001 * side_m / max_chart_m(options_) * options_.texel_size_m);
     }
 
     /// Largest first, so that a facet's map is that of its largest triangle.

@@ -238,6 +238,9 @@ private:
                                     .bits = bits(),
                                     .most_pairs = IntervalPage::kMostPairs,
                                     .ignore_alpha = ignore_alpha,
+                                    .texel_option = options_.half_resolution
+                                                        ? "texel_size, doubled by half_resolution:"
+                                                        : "texel_size",
                                     .resume_file = {}},
                                    {.lit_sides_only = true, .fine_parts = fine_parts()}, progress);
         }

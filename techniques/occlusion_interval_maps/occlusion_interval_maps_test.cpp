@@ -219,5 +219,30 @@ TEST_F(LightOffThePath, IsBakedAnewAndOthersAreNot) {
     EXPECT_TRUE(std::ranges::equal(visibility.image().pixels(), early.pixels()));
 }
 
+class TexelsThatDoNotFit : public ContextTest {};
+
+TEST_F(TexelsThatDoNotFit, AreToldByTheParameterThatTheUserSets) {
+    Frame frame{.scene = make_builtin_scene("courtyard"), .size = {64, 36}};
+    frame.camera = frame.scene.cameras().at(0);
+    frame.light = DirectionalLight{.to_light_ws = normalize(Vec3(-0.5f, 0.6f, 0.4f))};
+    const auto told = [&](bool half) {
+        try {
+            make_technique(context(), "occlusion_interval_maps",
+                           {{"texel_size", 1e-5}, {"half_resolution", half}})
+                ->render(frame);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_NE(told(false).find("light map: texel_size 1e-05 makes"), std::string::npos)
+        << told(false);
+    EXPECT_NE(told(true).find("texel_size, doubled by half_resolution: 2e-05 makes"),
+              std::string::npos)
+        << told(true);
+    EXPECT_EQ(told(false).find("texel_size_m"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gnomon
