@@ -163,14 +163,16 @@ HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTrian
     OpenSteps steps(walk, seen);
     for (int step = steps.next(); step >= 0; step = steps.next()) {
         const Terms<false> terms(walk, coefficients, step);
+        // At most steps there are none, and the compiler leaves the terms for afterwards.
+        const Lanes near = hn::And(lanes, terms.near(walk, coefficients, step));
+        if (bits_of(near) == 0) continue;
         const std::uint32_t all = bits_of(hn::And(solid, hn::Gt(terms.least(), terms.error)));
         if (all != 0) {
             walk.credit(visit.id, visit.first_lane + std::countr_zero(all), walk.tile.texels);
             walk.darken(step, ~std::uint64_t{0});
             continue;
         }
-        const Lanes some = hn::And(hn::And(lanes, terms.near(walk, coefficients, step)),
-                                   hn::Ge(terms.greatest(), hn::Neg(terms.error)));
+        const Lanes some = hn::And(near, hn::Ge(terms.greatest(), hn::Neg(terms.error)));
         append(walk.pairs, visit, step, terms, bits_of(some), masked);
         if (walk.pairs.records == Pairs::kRecords) test_pairs<false>(walk);
     }
