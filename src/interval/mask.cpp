@@ -31,17 +31,4 @@ int lit_steps(Mask mask) {
     return count;
 }
 
-// H. S. Warren, "Hacker's Delight", 2nd edition (2013), section 7-3, for 64 bits and the lowest
-// first: swaps the off-diagonal quarters of ever smaller squares.
-void transpose(std::span<std::uint64_t, 64> bits) {
-    std::uint64_t low_half = 0x00000000ffffffff;
-    for (unsigned half = 32; half != 0; half /= 2, low_half ^= low_half << half) {
-        for (unsigned i = 0; i < 64; i = (i + half + 1) & ~half) {
-            const std::uint64_t swapped = (bits[i] >> half ^ bits[i + half]) & low_half;
-            bits[i] ^= swapped << half;
-            bits[i + half] ^= swapped;
-        }
-    }
-}
-
 }  // namespace gnomon::interval

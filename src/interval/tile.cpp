@@ -126,12 +126,25 @@ Rectangle rectangle_along(std::span<const DVec3> origins, DVec3 normal, DVec3 u)
             0.5 * kLonger * std::max(length_v, kLeastSide * length_u) * v};
 }
 
-/// The smaller one of two: along the way from the first receiver to the next, which fits rows of
-/// texels; and along that to the farthest, a diagonal of a square of texels, which fits lines.
-/// Receivers at one place have a little one.
+/// Along the way from the first receiver to the next, which fits rows of texels; or, where most of
+/// that is empty, along that to the farthest, a diagonal of a square of texels, which fits lines,
+/// if it is smaller. Receivers at one place have a little one.
 Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
-    constexpr double kLeastHalf_m = 1e-3;
+    constexpr double kLeastHalf_m = 1e-3, kMostlyEmpty = 2.0;
     const auto far_from_first = [&](DVec3 p) { return glm::dot(p - origins[0], p - origins[0]); };
+    const auto towards = [&](DVec3 p) {
+        return rectangle_along(origins, normal, glm::normalize(p - origins[0]));
+    };
+    const auto area = [](const Rectangle& r) {
+        return 4.0 * glm::length(r.half_u) * glm::length(r.half_v);
+    };
+    const double spacing2 = far_from_first(origins[1]);
+    Rectangle row{};
+    if (spacing2 > 0.0) {
+        row = towards(origins[1]);
+        const double full = static_cast<double>(origins.size()) * spacing2;
+        if (area(row) < kMostlyEmpty * full) return row;
+    }
     const DVec3 farthest = *std::ranges::max_element(origins, {}, far_from_first);
     if (!(far_from_first(farthest) > 0.0)) {
         const DVec3 any =
@@ -139,16 +152,8 @@ Rectangle rectangle_around(std::span<const DVec3> origins, DVec3 normal) {
         const DVec3 u = glm::normalize(glm::cross(normal, any));
         return {origins[0], kLeastHalf_m * u, kLeastHalf_m * glm::cross(normal, u)};
     }
-    const auto towards = [&](DVec3 p) {
-        return rectangle_along(origins, normal, glm::normalize(p - origins[0]));
-    };
     const Rectangle diagonal = towards(farthest);
-    if (!(far_from_first(origins[1]) > 0.0)) return diagonal;
-    const Rectangle row = towards(origins[1]);
-    const auto area2 = [](const Rectangle& r) {
-        return glm::dot(r.half_u, r.half_u) * glm::dot(r.half_v, r.half_v);
-    };
-    return area2(row) < area2(diagonal) ? row : diagonal;
+    return spacing2 > 0.0 && area(row) < area(diagonal) ? row : diagonal;
 }
 
 /// Along `axis` from 0 to 1; nowhere without one.
