@@ -8,7 +8,7 @@
 #define GNOMON_INTERVAL_LEAF_INL_H
 #endif
 
-#include "interval/terms.inl.h"
+#include "interval/steps.inl.h"
 
 #include <bit>
 #include <limits>
@@ -16,107 +16,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::interval::HWY_NAMESPACE {
 
-/// Visits of one leaf, a register each.
-inline constexpr int kVisits = kWidth / kLanes;
-
 /// What is surely hit, and what may be: a bit for each texel, or for each step.
 struct Hits {
     std::uint64_t sure = 0, possible = 0;
-};
-
-/// The triangles of a visit that some step can see, with the first and the last step of all, and
-/// those of each unless the leaf is seen at few steps.
-struct SeenTriangles {
-    std::uint32_t any;
-    std::uint32_t low;  ///< those that may be on or below the tile's plane
-    int first_step, last_step;
-    bool has_steps_of_each;
-    alignas(64) float first_of_each[kLanes], last_of_each[kLanes];
-};
-
-HWY_INLINE Boxes boxes_of(const Tile& tile, const Triangles& t) {
-    const Vf zero = splat(0.0f);
-    const auto low = [&](Vf corner, Vf a, Vf b, int axis) HWY_ATTR {
-        return hn::Add(corner, hn::Sub(hn::Min(zero, hn::Min(a, b)),
-                                       splat(tile.upper_m[axis] - tile.center_m[axis])));
-    };
-    const auto high = [&](Vf corner, Vf a, Vf b, int axis) HWY_ATTR {
-        return hn::Add(corner, hn::Sub(hn::Max(zero, hn::Max(a, b)),
-                                       splat(tile.lower_m[axis] - tile.center_m[axis])));
-    };
-    return {{low(t.corner.x, t.edge1.x, t.edge2.x, 0), low(t.corner.y, t.edge1.y, t.edge2.y, 1),
-             low(t.corner.z, t.edge1.z, t.edge2.z, 2)},
-            {high(t.corner.x, t.edge1.x, t.edge2.x, 0), high(t.corner.y, t.edge1.y, t.edge2.y, 1),
-             high(t.corner.z, t.edge1.z, t.edge2.z, 2)}};
-}
-
-/// Heights of the triangles' highest corners over the tile's plane, and what they err.
-struct Heights {
-    Vf top, error;
-};
-
-HWY_INLINE Heights heights_of(const Tile& tile, const Triangles& t) {
-    const Vec3f normal = splat3(tile.normal);
-    const Vf height1 = dot(normal, t.edge1), height2 = dot(normal, t.edge2);
-    const Vf top = hn::Add(dot(normal, t.corner), hn::Max(splat(0.0f), hn::Max(height1, height2)));
-    const Vf size = hn::Add(sum_of_magnitudes(t.corner),
-                            hn::Add(sum_of_magnitudes(t.edge1), sum_of_magnitudes(t.edge2)));
-    return {top, hn::MulAdd(size, splat(kTermRoundings * kUnitRoundoff), splat(tile.touch_m))};
-}
-
-/// Where a leaf is seen at so few steps, testing all of its triangles at each takes less time than
-/// finding the steps of each.
-inline constexpr int kFewSteps = 8;
-
-HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangles& seen) {
-    const Triangles t = triangles_of(walk.tile, visit);
-    const Heights heights = heights_of(walk.tile, t);
-    const Lanes above = hn::Gt(heights.top, hn::Neg(heights.error));
-    seen.low = bits_of(hn::Le(heights.top, heights.error));
-    seen.has_steps_of_each = visit.last_step - visit.first_step >= kFewSteps;
-    if (!seen.has_steps_of_each) {
-        seen.any = bits_of(above);
-        seen.first_step = visit.first_step;
-        seen.last_step = visit.last_step;
-        return;
-    }
-    const Steps steps =
-        cut(steps_towards(walk.ranges, boxes_of(walk.tile, t)), visit.first_step, visit.last_step);
-    seen.any = bits_of(hn::And(steps.any, above));
-    hn::Store(steps.first, Floats(), seen.first_of_each);
-    hn::Store(steps.last, Floats(), seen.last_of_each);
-    const Vf none_first = splat(walk.ranges.last_step), none_last = splat(0.0f);
-    const Vf first = hn::IfThenElse(steps.any, steps.first, none_first);
-    const Vf last = hn::IfThenElse(steps.any, steps.last, none_last);
-    seen.first_step = static_cast<int>(hn::GetLane(hn::MinOfLanes(Floats(), first)));
-    seen.last_step = static_cast<int>(hn::GetLane(hn::MaxOfLanes(Floats(), last)));
-}
-
-/// The open steps of [first, last], one after the other.
-class OpenSteps {
-public:
-    HWY_INLINE OpenSteps(const Walk& walk, const SeenTriangles& seen)
-        : walk_(walk),
-          first_(seen.first_step),
-          last_(seen.last_step),
-          word_(first_ / 64),
-          bits_(walk.open_steps(word_, first_, last_)) {}
-
-    /// Less than 0 after the last.
-    HWY_INLINE int next() {
-        while (bits_ == 0) {
-            if (++word_ > last_ / 64) return -1;
-            bits_ = walk_.open_steps(word_, first_, last_);
-        }
-        const int step = 64 * word_ + std::countr_zero(bits_);
-        bits_ &= bits_ - 1;
-        return step;
-    }
-
-private:
-    const Walk& walk_;
-    int first_, last_, word_;
-    std::uint64_t bits_;
 };
 
 HWY_INLINE Lanes lanes_of(std::uint32_t bits) {
@@ -156,11 +58,11 @@ template <bool kMixed>
 HWY_NOINLINE void test_pairs(Walk& walk);
 
 /// Triangles that have the whole tile on one side.
-HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
+HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles<false>& seen,
                              Lanes lanes, const Coefficients<false>& coefficients) {
     const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
     const Lanes solid = hn::And(lanes, lanes_of(~masked));
-    OpenSteps steps(walk, seen);
+    OpenSteps<false> steps(walk, seen);
     for (int step = steps.next(); step >= 0; step = steps.next()) {
         const Terms<false> terms(walk, coefficients, step);
         // At most steps there are none, and the compiler leaves the terms for afterwards.
@@ -249,7 +151,7 @@ HWY_INLINE std::uint64_t dark_steps(const Walk& walk, const LeafVisit& visit, in
 
 /// Triangles that have the single texel on one side, one by one, with a step in each lane: each at
 /// its own steps alone.
-HWY_INLINE void cast_each(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
+HWY_INLINE void cast_each(Walk& walk, const LeafVisit& visit, const SeenTriangles<true>& seen,
                           std::uint32_t lanes, const Coefficients<true>& coefficients) {
     const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
     const TriangleTerms::Stored stored(coefficients);
@@ -276,7 +178,7 @@ HWY_INLINE void cast_each(Walk& walk, const LeafVisit& visit, const SeenTriangle
 /// takes less time than testing one by one at a register of steps.
 inline constexpr int kManySteps = 24;
 
-HWY_INLINE bool has_many_open_steps(const Walk& walk, const SeenTriangles& seen) {
+HWY_INLINE bool has_many_open_steps(const Walk& walk, const SeenTriangles<true>& seen) {
     int count = 0;
     for (int word = seen.first_step / 64; word <= seen.last_step / 64; ++word)
         count += std::popcount(walk.open_steps(word, seen.first_step, seen.last_step));
@@ -285,7 +187,7 @@ HWY_INLINE bool has_many_open_steps(const Walk& walk, const SeenTriangles& seen)
 
 /// The same for a single texel, which most steps leave no doubt about: without a branch that
 /// depends on whether they are dark. At many steps, each triangle for itself.
-HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
+HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles<true>& seen,
                              Lanes lanes, const Coefficients<true>& coefficients) {
     if (seen.has_steps_of_each && has_many_open_steps(walk, seen)) {
         cast_each(walk, visit, seen, bits_of(lanes), coefficients);
@@ -338,13 +240,13 @@ HWY_INLINE std::uint32_t judge_heights(const Walk& walk, const LeafVisit& visit,
 /// Triangles whose plane cuts the tile, or nearly, and those that are nearly in the tile's plane:
 /// which side counts is decided at each step by the determinant, and for each texel.
 template <bool kSingle>
-HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen,
+HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangles<kSingle>& seen,
                            std::uint32_t lanes, const Coefficients<kSingle>& coefficients,
                            const Sides& sides) {
     // Triangles whose height is still to be judged, and those it is left to each texel for.
     std::uint32_t unjudged = seen.low, varying = 0;
     const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
-    OpenSteps steps(walk, seen);
+    OpenSteps<kSingle> steps(walk, seen);
     for (int step = steps.next(); step >= 0; step = steps.next()) {
         Terms<kSingle> terms(walk, coefficients, step);
         const Lanes near = terms.near(walk, coefficients, step);
@@ -366,7 +268,7 @@ HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangl
 }
 
 template <bool kSingle>
-HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles& seen) {
+HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles<kSingle>& seen) {
     const Triangles t = triangles_of(walk.tile, visit);
     const Vec3f normal = cross(t.edge1, t.edge2);
     const Sides sides = sides_of<kSingle>(walk.tile, t, normal);
@@ -384,16 +286,16 @@ HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles& se
     if (mixed_bits != 0) cast_mixed<kSingle>(walk, visit, seen, mixed_bits, coefficients, sides);
 }
 
-/// The waiting leaves: the steps of all first, because those are computed without a branch.
+/// The waiting leaves: the steps of all first, because those take hardly a branch to compute.
 template <bool kSingle>
 HWY_INLINE void cast_leaves(Walk& walk) {
-    SeenTriangles seen[Walk::kLeafBatch * kVisits];
+    SeenTriangles<kSingle> seen[Walk::kLeafBatch * kVisits];
     const int count = walk.leaf_count;
     walk.leaf_count = 0;
     for (int i = 0; i < count; ++i)
         find_steps(walk, walk.leaves[i], seen[i]);
     for (int i = 0; i < count; ++i) {
-        if (seen[i].any == 0 || !walk.any_open(seen[i].first_step, seen[i].last_step)) continue;
+        if (seen[i].any == 0 || !seen[i].any_open(walk)) continue;
         cast<kSingle>(walk, walk.leaves[i], seen[i]);
     }
     if (walk.pairs.records >= Pairs::kBatch) test_pairs<false>(walk);

@@ -74,6 +74,12 @@ HWY_INLINE Vf error_of(const Tile& tile, const Triangles& t, Vf& place_m) {
     return hn::Mul(splat(kRoundUp), error);
 }
 
+/// A vector in a tile's coordinates: along s and t, and its height over the tile's plane.
+HWY_INLINE Vec3f in_tile(const Tile& tile, Vec3f v) {
+    return {dot(splat3(tile.s_per_m), v), dot(splat3(tile.t_per_m), v),
+            dot(splat3(tile.normal), v)};
+}
+
 /// The terms as vectors to be multiplied with the sun's direction, and what they err.
 template <bool kSingle>
 struct Coefficients;
@@ -103,13 +109,8 @@ struct Coefficients<false> {
     Vf error, corner_error;  ///< of u, v and w, and of a shadow's corners
 
     HWY_INLINE Coefficients(const Tile& tile, const Triangles& t, Vec3f, Lanes turned) {
-        const Vec3f along_s = splat3(tile.s_per_m), along_t = splat3(tile.t_per_m);
-        const Vec3f normal = splat3(tile.normal);
-        const auto in_tile = [&](Vec3f p) HWY_ATTR {
-            return Vec3f{dot(along_s, p), dot(along_t, p), dot(normal, p)};
-        };
-        corner = in_tile(t.corner);
-        const Vec3f first = in_tile(t.edge1), second = in_tile(t.edge2);
+        corner = in_tile(tile, t.corner);
+        const Vec3f first = in_tile(tile, t.edge1), second = in_tile(tile, t.edge2);
         // With its edges swapped, a triangle's terms have the other sign.
         edge1 = chosen(turned, second, first);
         edge2 = chosen(turned, first, second);

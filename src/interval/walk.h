@@ -130,8 +130,8 @@ struct Walk {
     /// The sun's direction in a tile's coordinates, where it is made as high as 1: how far it
     /// slants, and how much it was stretched for it. walk_tree() sets them for tiles of several
     /// texels.
-    alignas(64) float slant_s[DayPath::kMaxSteps], slant_t[DayPath::kMaxSteps];
-    alignas(64) float stretch[DayPath::kMaxSteps];
+    static constexpr int kPaddedSteps = DayPath::kMaxSteps + kWidth;  ///< read by whole registers
+    alignas(64) float slant_s[kPaddedSteps], slant_t[kPaddedSteps], stretch[kPaddedSteps];
     DVec3 origins[kMaxTexels];  ///< of the texels' rays, in the tree's frame
 
     /// Bit i of lit[k]: texel i is not yet known to be dark at step k. Bit k of open: some are not.
