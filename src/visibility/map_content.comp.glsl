@@ -39,7 +39,7 @@ void main() {
             content = warped_moments(along, push.exponent);
             break;
         case kContentMoments:
-            content = vec4(along, along * along, along * along * along, along * along * along * along);
+            content = powers(along);
             break;
     }
     imageStore(contents, texel, content);
