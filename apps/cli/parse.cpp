@@ -150,7 +150,11 @@ double parse_clock(std::string_view flag, std::string_view text) {
     double clock_s = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::string_view part = i < parts.size() ? parts[i] : "00";
-        const bool has_digits = part.size() >= 2 && std::isdigit(part[0]) && std::isdigit(part[1]);
+        const std::size_t digits = i == 0 ? std::min<std::size_t>(part.size(), 2) : 2;
+        const bool has_digits = digits > 0 && part.size() >= digits &&
+                                std::ranges::all_of(part.substr(0, digits), [](unsigned char c) {
+                                    return std::isdigit(c) != 0;
+                                });
         const bool has_more = part.size() > 2 && (i < 2 || part[2] != '.');
         if (!has_digits || has_more) fail();
         double value = 0.0;

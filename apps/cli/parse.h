@@ -46,8 +46,8 @@ DVec3 parse_vector(std::string_view flag, std::string_view text, Range range);
 /// "x" (a grey) or "r,g,b", each within `range`.
 Vec3 parse_color(std::string_view flag, std::string_view text, Range range);
 
-/// "10:30", "10:30:15" or "10:30:15.25" in seconds since midnight; hours up to 99, for clocks that
-/// go on.
+/// "10:30", "9:30", "10:30:15" or "10:30:15.25" in seconds since midnight; hours up to 99, for
+/// clocks that go on.
 double parse_clock(std::string_view flag, std::string_view text);
 
 /// "10:30:15"; of a time before midnight that of the day before.

@@ -77,8 +77,9 @@ TEST(Clock, IsHoursMinutesAndMaybeSeconds) {
     EXPECT_EQ(parse_clock("--time", "10:30"), 37800.0);
     EXPECT_EQ(parse_clock("--time", "00:00:07.25"), 7.25);
     EXPECT_EQ(parse_clock("--time", "24:00:59"), 86459.0);
-    for (const char* text : {"", "10", "1:30", "10:3", "10:60", "10:30:60", "10:30:5", "10:30:15:1",
-                             "10.5:30", "-1:30", "10:30pm", "10:30:1e1", "noon"}) {
+    EXPECT_EQ(parse_clock("--time", "9:30"), 34200.0);
+    for (const char* text : {"", "10", ":30", "100:30", "10:3", "10:60", "10:30:60", "10:30:5",
+                             "10:30:15:1", "10.5:30", "-1:30", "10:30pm", "10:30:1e1", "noon"}) {
         const std::string message = message_of([&] { parse_clock("--time", text); });
         expect_mentions(message, {"--time", text, "10:30"});
     }

@@ -143,7 +143,7 @@ Image vertex_picture(Context& context, const Frame& frame, const std::vector<Lig
                      const RenderFlags& flags, const VertexLightingOptions& options,
                      ConsoleProgress& progress) {
     const VertexLighting vertices(frame.scene, lights, options, progress);
-    const Image picture = vertex_lit_picture(
+    Image picture = vertex_lit_picture(
         context, frame, vertices, lights, flags.lighting,
         flags.shading == "vertex_flat" ? VertexShading::flat : VertexShading::averaged);
     progress.clear();
