@@ -135,7 +135,7 @@ void MapTechnique::record(gpu::Commands& commands, const RecordInput& input,
     }
     const gpu::Pass pass(commands, "lookup");
     lookup_.record(commands, input.receivers, input.frame.light, layers_,
-                   contents ? contents->image() : map.image(), ids ? &map.ids() : nullptr,
+                   contents ? contents->image() : map.image(), map.ids(),
                    is_bounded ? &bounds : nullptr, survey_.get(), visibility);
 }
 

@@ -44,7 +44,8 @@ TEST_F(InterruptedTest, AFrameLeavesNoMapsForTheNext) {
                       .camera = scene.cameras().front(),
                       .light = scene.lights().front(),
                       .size = {160, 90}};
-    for (const MapContent content : {MapContent::depth, MapContent::moments}) {
+    for (const MapContent content :
+         {MapContent::depth, MapContent::object_id, MapContent::moments}) {
         MapOptions options;
         options.map_size = 512;
         options.reuse_maps = true;

@@ -138,7 +138,7 @@ bool DepthMap::record(gpu::Commands& commands, const raster::GpuScene& scene,
     draw_passes(commands, scene, options);
     draw_patches(commands, scene, options);
     commands.use(image_, gpu::Use::sampled);
-    if (ids_) commands.use(ids_, gpu::Use::sampled);
+    commands.use(ids_, gpu::Use::sampled);
     return true;
 }
 
@@ -171,16 +171,14 @@ void DepthMap::make_image(unsigned size_texels, unsigned layers, bool reuse) {
 }
 
 void DepthMap::make_ids(bool wanted) {
-    if (!wanted) ids_ = gpu::Image();
-    if (!wanted ||
-        (ids_ && ids_.size() == image_.size() && ids_.info().layers == image_.info().layers)) {
-        return;
-    }
+    const Extent size = wanted ? image_.size() : Extent{1, 1};
+    const unsigned layers = wanted ? image_.info().layers : 1;
+    if (ids_ && ids_.size() == size && ids_.info().layers == layers) return;
     ids_ = gpu::Image(device_,
-                      {.size = image_.size(),
+                      {.size = size,
                        .format = kIdFormat,
                        .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                       .layers = image_.info().layers,
+                       .layers = layers,
                        .array = true});
 }
 
@@ -360,7 +358,7 @@ void DepthMap::draw_passes(gpu::Commands& commands, const raster::GpuScene& scen
     clear_sparse(commands);
     commands.use(map, gpu::Use::depth_target);
     std::vector<const gpu::Image*> ids;
-    if (ids_) {
+    if (options.ids) {
         commands.use(ids_, gpu::Use::color_target);
         ids = {&ids_};
     }

@@ -28,7 +28,8 @@ public:
                 std::span<const MapLayer> layers, const CasterOptions& options);
 
     const gpu::Image& image() const { return image_; }
-    /// Where ids were asked for: whose depths these are, index into Scene::instances(); R32UI.
+    /// Where ids were asked for: whose depths these are, index into Scene::instances(); R32UI. Else
+    /// a texel that stands in for them.
     const gpu::Image& ids() const { return ids_; }
     /// Of a layer that was planned as `planned`: one that is not needed may hold what an earlier
     /// frame drew into it.
@@ -115,7 +116,7 @@ private:
     // By whether the near plane clamps, layered, from positions alone, with ids.
     std::optional<Pipelines> pipelines_[2][2][2][2];
     gpu::Image image_;
-    gpu::Image ids_;      // only where they are asked for
+    gpu::Image ids_;
     gpu::Image still_;    // without the casters that move; only where some do
     gpu::Image scratch_;  // for what moves within a layer; only where maps are reused
     CasterDraws casters_;

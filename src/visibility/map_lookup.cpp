@@ -180,11 +180,7 @@ MapLookup::MapLookup(const gpu::Device& device, const ReadingOptions& reading,
       frame_(device, sizeof(shared::MapFrame),
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
              gpu::Placement::device),
-      blocks_(block_buffer(device, sizeof(std::uint32_t))),
-      no_ids_(device, {.size = {1, 1},
-                       .format = VK_FORMAT_R32_UINT,
-                       .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
-                       .array = true}) {}
+      blocks_(block_buffer(device, sizeof(std::uint32_t))) {}
 
 LookupPipeline& MapLookup::pipeline(const LookupLayers& layers, std::size_t layer_count,
                                     std::uint32_t proof, bool listed) {
@@ -241,7 +237,7 @@ std::vector<MapLookup::Part> MapLookup::list(gpu::Commands& commands, const Rece
 
 void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receivers,
                        const Light& light, const LookupLayers& lookup_layers, const gpu::Image& map,
-                       const gpu::Image* ids, const MapBounds* bounds, const ReceiverSurvey* survey,
+                       const gpu::Image& ids, const MapBounds* bounds, const ReceiverSurvey* survey,
                        gpu::Image& visibility) {
     const std::vector<LookupLayer>& layers = lookup_layers.layers;
     assert(!layers.empty() && layers.size() <= shared::kMaxMapLayers);
@@ -270,7 +266,6 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
         survey != nullptr ? list(commands, *survey, frame, lookup_layers.choice, layers.size())
                           : std::vector<Part>{{0, layers.size(), 0, whole}};
     commands.use(visibility, gpu::Use::storage_write);
-    commands.use(no_ids_, gpu::Use::sampled);
     const std::uint32_t proof = bounds == nullptr ? shared::kProofNone
                                 : shows_proven_   ? shared::kProofShown
                                                   : shared::kProofSkips;
@@ -283,8 +278,7 @@ void MapLookup::record(gpu::Commands& commands, const raster::Receivers& receive
              gpu::StorageImage{receivers.normals.view()}, gpu::StorageImage{visibility.view()},
              gpu::Texture{map.view(), &nearest_}, gpu::UniformBuffer{&frame_},
              gpu::Texture{(bounds == nullptr ? map : bounds->image()).view(), &nearest_},
-             gpu::StorageBuffer{&blocks_},
-             gpu::Texture{(ids == nullptr ? no_ids_ : *ids).view(), &nearest_},
+             gpu::StorageBuffer{&blocks_}, gpu::Texture{ids.view(), &nearest_},
              gpu::StorageImage{receivers.ids.view()}});
         commands.push(lookup, shared::MapLookupPush{part.first_layer, part.first_block});
         commands.dispatch(part.groups, 1);

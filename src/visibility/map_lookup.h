@@ -91,11 +91,11 @@ class MapLookup {
 public:
     MapLookup(const gpu::Device& device, const ReadingOptions& reading, const BiasOptions& bias);
 
-    /// `ids`: of the map's depths, where the content is object ids. `bounds`: of the map's tiles,
-    /// where there are some; filters are skipped by them, which changes no pixel. `survey`: of the
-    /// same receivers, where there is one; pixels without receivers are then not looked at.
+    /// `ids`: of the map's depths, read where the content is object ids. `bounds`: of the map's
+    /// tiles, where there are some; filters are skipped by them, which changes no pixel. `survey`:
+    /// of the same receivers, where there is one; pixels without receivers are then not looked at.
     void record(gpu::Commands& commands, const raster::Receivers& receivers, const Light& light,
-                const LookupLayers& layers, const gpu::Image& map, const gpu::Image* ids,
+                const LookupLayers& layers, const gpu::Image& map, const gpu::Image& ids,
                 const MapBounds* bounds, const ReceiverSurvey* survey, gpu::Image& visibility);
 
     /// From now on, where there are bounds: 1 and 0 where they prove a receiver lit and dark, a
@@ -126,7 +126,6 @@ private:
     gpu::Sampler nearest_;
     gpu::Buffer frame_;
     gpu::Buffer blocks_;  // of pixels that are looked at
-    gpu::Image no_ids_;   // stands in for those of a map that has none
     bool shows_proven_ = false;
 };
 

@@ -38,7 +38,7 @@ protected:
         gpu::Image& target = visibility.impl().device_target(impl, frame.size);
         commands = submission.begin();
         map.record(commands, impl.gpu_scene(frame.scene), drawn, {});
-        lookup.record(commands, receivers, frame.light, layers, map.image(), nullptr, nullptr,
+        lookup.record(commands, receivers, frame.light, layers, map.image(), map.ids(), nullptr,
                       surveyed ? &survey : nullptr, target);
         commands.use(target, gpu::Use::storage_read);
         submission.submit_and_wait();
