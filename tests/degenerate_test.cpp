@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <string_view>
 
 namespace gnomon {
@@ -95,7 +96,8 @@ protected:
     const TechniqueInfo& info() const { return *GetParam(); }
 
     Comparison compared(const Frame& frame, const Visibility& truth) const {
-        visibility_ = test::render(info().name, frame);
+        if (!technique_) technique_ = make_technique(context(), info().name);
+        visibility_ = technique_->render(frame);
         return compare(visibility_, truth, comparison_mask(context(), frame));
     }
 
@@ -137,7 +139,8 @@ protected:
         expect_truth(scene, from_below());
     }
 
-    mutable Visibility visibility_;  // the last one
+    mutable std::unique_ptr<Technique> technique_;  // one for all pictures: bakes serve several
+    mutable Visibility visibility_;                 // the last one
 };
 
 std::vector<const TechniqueInfo*> casting_techniques() {
