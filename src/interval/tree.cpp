@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "interval/collapse.h"
+#include "interval/magnitudes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,6 @@
 namespace gnomon::interval {
 
 namespace {
-
-double sum_of_magnitudes(DVec3 v) {
-    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
 
 /// Work between two questions whether to go on.
 constexpr std::uint32_t kTrianglesPerReport = 1 << 16;
