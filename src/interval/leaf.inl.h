@@ -34,7 +34,7 @@ HWY_INLINE float* append(Pairs& pairs, const LeafVisit& visit, int step,
     const int record = pairs.records;
     float* const to = pairs.terms[record];
     terms.store(to);
-    pairs.lanes[record] = some;
+    pairs.lanes[record] = pairs.half_lanes[record][0] = pairs.half_lanes[record][1] = some;
     pairs.masked[record] = some & masked;
     pairs.step[record] = step;
     pairs.leaf[record] = visit.id;
@@ -57,17 +57,42 @@ HWY_INLINE void store_sides(float* record, const Sides& sides, Vf signs, Lanes v
 template <bool kMixed>
 HWY_NOINLINE void test_pairs(Walk& walk);
 
-/// Triangles that have the whole tile on one side.
-HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles<false>& seen,
-                             Lanes lanes, const Coefficients<false>& coefficients) {
+/// No edge of the triangles is longer than half of the tile's side, along s and t, if the sun is
+/// high: then most shadows reach one half of the texels only, and it is worth asking which.
+HWY_INLINE bool are_small(const Tile& tile, Lanes lanes, const Coefficients<false>& coefficients) {
+    const auto extent = [](const Vec3f& edge)
+                            HWY_ATTR { return hn::Max(hn::Abs(edge.x), hn::Abs(edge.y)); };
+    const Vf longest = hn::Max(extent(coefficients.edge1), extent(coefficients.edge2));
+    return tile.texels > Pairs::kHalf && bits_of(hn::And(lanes, hn::Gt(longest, splat(1.0f)))) == 0;
+}
+
+/// Leaves out the triangles of a record whose shadows reach no lit texels of a half.
+HWY_INLINE void split(Pairs& pairs, int record, const Rectangles& rectangles, const Walk& walk,
+                      unsigned lit_groups) {
+    constexpr unsigned kFirst = (1u << Pairs::kHalf / 8) - 1;
+    pairs.half_lanes[record][0] &= bits_of(rectangles.meet(walk.bounds[lit_groups & kFirst]));
+    pairs.half_lanes[record][1] &= bits_of(rectangles.meet(walk.bounds[lit_groups & ~kFirst]));
+    pairs.are_split = true;
+}
+
+/// Triangles that have the whole tile on one side, or, if `kAbove`, that are above its plane: the
+/// lines of rays hit them where the rays do, so that det tells on which side each texel is. Near 0
+/// its sign may be wrong; then no term is greater than what det errs.
+template <bool kAbove>
+HWY_INLINE void cast_whole(Walk& walk, const LeafVisit& visit, const SeenTriangles<false>& seen,
+                           Lanes lanes, const Coefficients<false>& coefficients) {
     const std::uint32_t masked = walk.masked(visit.id) >> visit.first_lane;
     const Lanes solid = hn::And(lanes, lanes_of(~masked));
+    const bool is_split = are_small(walk.tile, lanes, coefficients);
     OpenSteps<false> steps(walk, seen);
     for (int step = steps.next(); step >= 0; step = steps.next()) {
-        const Terms<false> terms(walk, coefficients, step);
+        Terms<false> terms(walk, coefficients, step);
         // At most steps there are none, and the compiler leaves the terms for afterwards.
-        const Lanes near = hn::And(lanes, terms.near(walk, coefficients, step));
+        const Rectangles rectangles = terms.rectangles(walk, coefficients, step);
+        const unsigned lit_groups = walk.lit_groups(step);
+        const Lanes near = hn::And(lanes, rectangles.meet(walk.bounds[lit_groups]));
         if (bits_of(near) == 0) continue;
+        if constexpr (kAbove) terms.negate_where(hn::And(terms.det, splat(-0.0f)));
         const std::uint32_t all = bits_of(hn::And(solid, hn::Gt(terms.least(), terms.error)));
         if (all != 0) {
             walk.credit(visit.id, visit.first_lane + std::countr_zero(all), walk.tile.texels);
@@ -75,9 +100,16 @@ HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTrian
             continue;
         }
         const Lanes some = hn::And(near, hn::Ge(terms.greatest(), hn::Neg(terms.error)));
+        const int record = walk.pairs.records;
         append(walk.pairs, visit, step, terms, bits_of(some), masked);
+        if (is_split) split(walk.pairs, record, rectangles, walk, lit_groups);
         if (walk.pairs.records == Pairs::kRecords) test_pairs<false>(walk);
     }
+}
+
+HWY_INLINE void cast_unmixed(Walk& walk, const LeafVisit& visit, const SeenTriangles<false>& seen,
+                             Lanes lanes, const Coefficients<false>& coefficients) {
+    cast_whole<false>(walk, visit, seen, lanes, coefficients);
 }
 
 /// Steps that make a triangle worth trying first for a single texel.
@@ -267,8 +299,19 @@ HWY_INLINE void cast_mixed(Walk& walk, const LeafVisit& visit, const SeenTriangl
     }
 }
 
+HWY_INLINE Coefficients<true> coefficients_of(const Tile& tile, const SeenTriangles<true>&,
+                                              const Triangles& t, Vec3f normal, Lanes turned) {
+    return {tile, t, normal, turned};
+}
+HWY_INLINE Coefficients<false> coefficients_of(const Tile&, const SeenTriangles<false>& seen,
+                                               const Triangles&, Vec3f, Lanes turned) {
+    return {seen.triangles, turned};
+}
+
+/// Triangles any of which may reach down to the tile's plane.
 template <bool kSingle>
-HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles<kSingle>& seen) {
+HWY_INLINE void cast_by_sides(Walk& walk, const LeafVisit& visit,
+                              const SeenTriangles<kSingle>& seen) {
     const Triangles t = triangles_of(walk.tile, visit);
     const Vec3f normal = cross(t.edge1, t.edge2);
     const Sides sides = sides_of<kSingle>(walk.tile, t, normal);
@@ -278,12 +321,24 @@ HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles<kSi
     const Lanes mixed =
         hn::And(present, hn::Or(hn::Le(hn::Abs(sides.center), reach), lanes_of(seen.low)));
     const Lanes turned = hn::AndNot(mixed, hn::Lt(sides.center, splat(0.0f)));
-    const Coefficients<kSingle> coefficients(walk.tile, t, normal, turned);
+    const auto coefficients = coefficients_of(walk.tile, seen, t, normal, turned);
     const std::uint32_t mixed_bits = bits_of(mixed);
     if (mixed_bits != seen.any) {
         cast_unmixed(walk, visit, seen, hn::AndNot(mixed, present), coefficients);
     }
     if (mixed_bits != 0) cast_mixed<kSingle>(walk, visit, seen, mixed_bits, coefficients, sides);
+}
+
+HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles<true>& seen) {
+    cast_by_sides(walk, visit, seen);
+}
+HWY_INLINE void cast(Walk& walk, const LeafVisit& visit, const SeenTriangles<false>& seen) {
+    if (!seen.are_above) {
+        cast_by_sides(walk, visit, seen);
+        return;
+    }
+    const Coefficients<false> coefficients(seen.triangles, lanes_of(0));
+    cast_whole<true>(walk, visit, seen, lanes_of(seen.any), coefficients);
 }
 
 /// The waiting leaves: the steps of all first, because those take hardly a branch to compute.
@@ -296,7 +351,7 @@ HWY_INLINE void cast_leaves(Walk& walk) {
         find_steps(walk, walk.leaves[i], seen[i]);
     for (int i = 0; i < count; ++i) {
         if (seen[i].any == 0 || !seen[i].any_open(walk)) continue;
-        cast<kSingle>(walk, walk.leaves[i], seen[i]);
+        cast(walk, walk.leaves[i], seen[i]);
     }
     if (walk.pairs.records >= Pairs::kBatch) test_pairs<false>(walk);
     if (walk.mixed_pairs.records >= Pairs::kBatch) test_pairs<true>(walk);

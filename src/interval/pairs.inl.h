@@ -10,17 +10,20 @@
 
 #include "interval/leaf.inl.h"
 
+#include <algorithm>
+#include <bit>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::interval::HWY_NAMESPACE {
 
-/// u, v and det of a triangle, and how u and v vary over the tile.
+/// u, v and det, and how u and v vary over the tile.
 struct Plane {
     Vf u, v, det, edge1_s, edge1_t, edge2_s, edge2_t;
 
-    HWY_INLINE Plane(const float* terms) {
-        const auto term = [&](int index) HWY_ATTR { return splat(terms[index * kLanes]); };
+    /// `term` tells each: of one triangle in all lanes, or of one in each.
+    template <typename Get>
+    HWY_INLINE explicit Plane(const Get& term) {
         u = term(Term::u);
         v = term(Term::v);
         det = term(Term::det);
@@ -30,7 +33,7 @@ struct Plane {
         edge2_t = term(Term::edge2_t);
     }
 
-    /// min(u, v, w) of texels.
+    /// min(u, v, w) at texels.
     HWY_INLINE Vf least(Vf s, Vf t) const {
         const Vf u_at = hn::MulAdd(t, edge2_s, hn::NegMulAdd(s, edge2_t, u));
         const Vf v_at = hn::MulAdd(s, edge1_t, hn::NegMulAdd(t, edge1_s, v));
@@ -40,8 +43,8 @@ struct Plane {
 
 template <bool kMixed, int kRegisters>
 HWY_INLINE Hits hits_of(const Tile& tile, const float* terms, int first_texel) {
-    const Plane plane(terms);
     const auto term = [&](int index) HWY_ATTR { return splat(terms[index * kLanes]); };
+    const Plane plane(term);
     const Vf error = term(Term::error);
     Hits hits;
     for (int i = 0; i < kRegisters; ++i) {
@@ -63,9 +66,10 @@ HWY_INLINE Hits hits_of(const Tile& tile, const float* terms, int first_texel) {
 
 /// Tests the triangles of a record one by one: double decides where float cannot.
 template <bool kMixed, int kRegisters>
-HWY_INLINE void test_singly(Walk& walk, const Pairs& pairs, int record, int first_texel) {
+HWY_INLINE void test_singly(Walk& walk, const Pairs& pairs, int record, std::uint32_t lanes,
+                            int first_texel) {
     const int step = pairs.step[record];
-    for (std::uint32_t rest = pairs.lanes[record]; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
         const std::uint64_t lit = walk.lit[step];
         if (lit == 0) return;
         const int lane = std::countr_zero(rest), leaf_lane = pairs.first_lane[record] + lane;
@@ -90,8 +94,9 @@ HWY_INLINE Hits hits_together(const Tile& tile, const float* terms, std::uint32_
         most = splat(std::numeric_limits<float>::lowest());
     for (; lanes != 0; lanes &= lanes - 1) {
         const float* const at = terms + std::countr_zero(lanes);
-        const Plane plane(at);
-        error = hn::Max(error, splat(at[Term::error * kLanes]));
+        const auto term = [&](int index) HWY_ATTR { return splat(at[index * kLanes]); };
+        const Plane plane(term);
+        error = hn::Max(error, term(Term::error));
         for (int i = 0; i < kRegisters; ++i) {
             const int first = first_texel + i * kLanes;
             greatest[i] =
@@ -107,29 +112,95 @@ HWY_INLINE Hits hits_together(const Tile& tile, const float* terms, std::uint32_
     return hits;
 }
 
-/// Tests the triangles of a record: texels that are surely hit by any of them need no closer look,
-/// and few others do.
+/// Those of `texels` that triangles of a record hit: a triangle in each lane. Double decides where
+/// float cannot.
+HWY_INLINE std::uint64_t hits_at(const Walk& walk, const Pairs& pairs, int record,
+                                 std::uint32_t lanes, std::uint64_t texels) {
+    const float* const terms = pairs.terms[record];
+    const auto term = [&](int index) HWY_ATTR { return load(terms + index * kLanes); };
+    const Plane planes(term);
+    const Vf error = term(Term::error);
+    std::uint64_t hits = 0;
+    for (; texels != 0; texels &= texels - 1) {
+        const int texel = std::countr_zero(texels);
+        const std::uint64_t bit = std::uint64_t{1} << texel;
+        const Vf least = planes.least(splat(walk.tile.s[texel]), splat(walk.tile.t[texel]));
+        bool is_hit = (bits_of(hn::Gt(least, error)) & lanes) != 0;
+        std::uint32_t possible = bits_of(hn::Ge(least, hn::Neg(error))) & lanes;
+        for (; !is_hit && possible != 0; possible &= possible - 1) {
+            const int lane = pairs.first_lane[record] + std::countr_zero(possible);
+            is_hit =
+                blocked_texels(walk, bit, pairs.step[record], pairs.leaf[record], lane, true) != 0;
+        }
+        hits |= is_hit ? bit : 0;
+    }
+    return hits;
+}
+
+/// Tests triangles of a record: texels that are surely hit by any of them need no closer look, and
+/// few others do.
 template <bool kMixed, int kRegisters>
-HWY_INLINE void test_record(Walk& walk, const Pairs& pairs, int record, int first_texel) {
+HWY_INLINE void test_record(Walk& walk, const Pairs& pairs, int record, std::uint32_t lanes,
+                            int first_texel) {
     const int step = pairs.step[record];
     const std::uint64_t lit = walk.lit[step];
     if (lit == 0) return;
     if (kMixed || pairs.masked[record] != 0) {
-        test_singly<kMixed, kRegisters>(walk, pairs, record, first_texel);
+        test_singly<kMixed, kRegisters>(walk, pairs, record, lanes, first_texel);
         return;
     }
-    const Hits hits =
-        hits_together<kRegisters>(walk.tile, pairs.terms[record], pairs.lanes[record], first_texel);
+    Hits hits = hits_together<kRegisters>(walk.tile, pairs.terms[record], lanes, first_texel);
+    const std::uint64_t unsure = hits.possible & ~hits.sure & lit;
+    if (unsure != 0) hits.sure |= hits_at(walk, pairs, record, lanes, unsure);
     walk.darken(step, hits.sure);
-    if ((hits.possible & ~hits.sure & lit) != 0)
-        test_singly<false, kRegisters>(walk, pairs, record, first_texel);
 }
 
-/// Tests the waiting triangles on some registers of texels.
+/// Tests all records on some registers of texels.
 template <bool kMixed, int kRegisters>
 HWY_INLINE void test_on(Walk& walk, const Pairs& pairs, int first_texel) {
     for (int record = 0; record < pairs.records; ++record)
-        test_record<kMixed, kRegisters>(walk, pairs, record, first_texel);
+        test_record<kMixed, kRegisters>(walk, pairs, record, pairs.lanes[record], first_texel);
+}
+
+/// Registers that are tested together: more terms than these do not fit beside theirs.
+inline constexpr int kMostRegisters = 4;
+
+/// Tests some records on one half of the texels.
+HWY_INLINE void test_half(Walk& walk, const Pairs& pairs, const std::int32_t* records, int count,
+                          int half) {
+    constexpr int kTogether = std::min(kMostRegisters, Pairs::kHalf / kLanes);
+    for (int first = 0; first < Pairs::kHalf; first += kTogether * kLanes) {
+        for (int i = 0; i < count; ++i) {
+            const int record = records[i];
+            test_record<false, kTogether>(walk, pairs, record, pairs.half_lanes[record][half],
+                                          half * Pairs::kHalf + first);
+        }
+    }
+}
+
+/// Tests records whose triangles may differ from one half of the texels to the other: where most do
+/// not, on all texels together, if these fit. Which record goes where takes no branch.
+HWY_INLINE void test_split(Walk& walk, const Pairs& pairs) {
+    constexpr bool kFits = kMaxTexels / kLanes <= kMostRegisters;
+    std::int32_t whole[Pairs::kRecords], halves[2][Pairs::kRecords];
+    int wholes = 0, counts[2] = {};
+    for (int record = 0; record < pairs.records; ++record) {
+        const std::uint32_t* const lanes = pairs.half_lanes[record];
+        const int each = std::popcount(lanes[0]) + std::popcount(lanes[1]);
+        const bool is_whole = kFits && 2 * each > 3 * std::popcount(lanes[0] | lanes[1]);
+        whole[wholes] = record;
+        wholes += is_whole ? 1 : 0;
+        for (int half = 0; half < 2; ++half) {
+            halves[half][counts[half]] = record;
+            counts[half] += !is_whole && lanes[half] != 0 ? 1 : 0;
+        }
+    }
+    for (int i = 0; i < wholes; ++i) {
+        const std::uint32_t* const lanes = pairs.half_lanes[whole[i]];
+        test_record<false, kMostRegisters>(walk, pairs, whole[i], lanes[0] | lanes[1], 0);
+    }
+    for (int half = 0; half < 2; ++half)
+        test_half(walk, pairs, halves[half], counts[half], half);
 }
 
 /// Tests the waiting triangles at their steps, texel by texel.
@@ -137,15 +208,18 @@ template <bool kMixed>
 HWY_NOINLINE void test_pairs(Walk& walk) {
     Pairs& pairs = kMixed ? walk.mixed_pairs : walk.pairs;
     const int texels = walk.tile.texels;
-    if (texels <= kLanes) {
+    if (!kMixed && pairs.are_split) {
+        test_split(walk, pairs);
+    } else if (texels <= kLanes) {
         test_on<kMixed, 1>(walk, pairs, 0);
     } else if (texels <= 2 * kLanes) {
         test_on<kMixed, 2>(walk, pairs, 0);
     } else {
-        for (int first = 0; first < texels; first += 4 * kLanes)
-            test_on<kMixed, 4>(walk, pairs, first);
+        for (int first = 0; first < texels; first += kMostRegisters * kLanes)
+            test_on<kMixed, kMostRegisters>(walk, pairs, first);
     }
     pairs.records = 0;
+    pairs.are_split = false;
 }
 
 }  // namespace gnomon::interval::HWY_NAMESPACE

@@ -45,6 +45,8 @@ struct SeenTriangles<true> {
 template <>
 struct SeenTriangles<false> {
     std::uint32_t any, low;
+    bool are_above;  ///< all corners of all that are seen, by more than touches
+    TileTriangles triangles;
     int first, last;
     std::uint64_t steps[Walk::kMaxWords];
 
@@ -77,7 +79,14 @@ HWY_INLINE Boxes boxes_of(const Tile& tile, const Triangles& t) {
              high(t.corner.z, t.edge1.z, t.edge2.z, 2)}};
 }
 
-/// Heights of the triangles' highest corners over the tile's plane, and what they err.
+/// What heights of triangles' corners over the tile's plane err.
+HWY_INLINE Vf height_error(const Tile& tile, const Triangles& t) {
+    const Vf size = hn::Add(sum_of_magnitudes(t.corner),
+                            hn::Add(sum_of_magnitudes(t.edge1), sum_of_magnitudes(t.edge2)));
+    return hn::MulAdd(size, splat(kTermRoundings * kUnitRoundoff), splat(tile.touch_m));
+}
+
+/// Of the triangles' highest corners.
 struct Heights {
     Vf top, error;
 };
@@ -86,9 +95,7 @@ HWY_INLINE Heights heights_of(const Tile& tile, const Triangles& t) {
     const Vec3f normal = splat3(tile.normal);
     const Vf height1 = dot(normal, t.edge1), height2 = dot(normal, t.edge2);
     const Vf top = hn::Add(dot(normal, t.corner), hn::Max(splat(0.0f), hn::Max(height1, height2)));
-    const Vf size = hn::Add(sum_of_magnitudes(t.corner),
-                            hn::Add(sum_of_magnitudes(t.edge1), sum_of_magnitudes(t.edge2)));
-    return {top, hn::MulAdd(size, splat(kTermRoundings * kUnitRoundoff), splat(tile.touch_m))};
+    return {top, height_error(tile, t)};
 }
 
 /// Where a leaf is seen at fewer steps, testing all of its triangles at each takes less time than
@@ -124,17 +131,11 @@ HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangl
 /// register of steps in less time than those of its triangles at one.
 class ShadowBox {
 public:
-    HWY_INLINE ShadowBox(const Tile& tile, const Triangles& t, Lanes some) {
-        const Vec3f corner = in_tile(tile, t.corner);
-        const Vec3f edge1 = in_tile(tile, t.edge1), edge2 = in_tile(tile, t.edge2);
-        s_ = extent(corner.x, edge1.x, edge2.x, some);
-        t_ = extent(corner.y, edge1.y, edge2.y, some);
-        height_ = extent(corner.z, edge1.z, edge2.z, some);
-        Vf place_m;
-        error_of<false>(tile, t, place_m);
-        const Vf greatest_m = hn::MaxOfLanes(Floats(), hn::IfThenElseZero(some, place_m));
-        corner_error_ = hn::Mul(greatest_m, splat(tile.per_m));
-    }
+    HWY_INLINE ShadowBox(const TileTriangles& t, Lanes some)
+        : s_(extent(t.corner.x, t.edge1.x, t.edge2.x, some)),
+          t_(extent(t.corner.y, t.edge1.y, t.edge2.y, some)),
+          height_(extent(t.corner.z, t.edge1.z, t.edge2.z, some)),
+          corner_error_(hn::MaxOfLanes(Floats(), hn::IfThenElseZero(some, t.corner_error))) {}
 
     /// The steps of a register from `step` at which the shadow meets the tile: bit 0 is `step`.
     HWY_INLINE std::uint64_t steps_on_tile(const Walk& walk, int step) const {
@@ -170,16 +171,22 @@ private:
 HWY_INLINE void find_steps(const Walk& walk, const LeafVisit& visit, SeenTriangles<false>& seen) {
     constexpr std::uint64_t kRegister = (std::uint64_t{1} << kLanes) - 1;
     const Triangles t = triangles_of(walk.tile, visit);
-    const Heights heights = heights_of(walk.tile, t);
-    const Lanes above = hn::Gt(heights.top, hn::Neg(heights.error));
+    seen.triangles = TileTriangles(walk.tile, t);
+    const Vf zero = splat(0.0f), error = height_error(walk.tile, t);
+    const Vf height = seen.triangles.corner.z;
+    const Vf height1 = seen.triangles.edge1.z, height2 = seen.triangles.edge2.z;
+    const Vf top = hn::Add(height, hn::Max(zero, hn::Max(height1, height2)));
+    const Vf bottom = hn::Add(height, hn::Min(zero, hn::Min(height1, height2)));
+    const Lanes above = hn::Gt(top, hn::Neg(error));
     seen.any = bits_of(above);
-    seen.low = bits_of(hn::Le(heights.top, heights.error));
+    seen.low = bits_of(hn::Le(top, error));
+    seen.are_above = bits_of(hn::AndNot(hn::Gt(bottom, error), above)) == 0;
     seen.first = visit.first_step / 64;
     seen.last = visit.last_step / 64;
     for (int word = seen.first; word <= seen.last; ++word)
         seen.steps[word] = walk.open_steps(word, visit.first_step, visit.last_step);
     if (visit.last_step - visit.first_step < kFewSteps) return;
-    const ShadowBox box(walk.tile, t, above);
+    const ShadowBox box(seen.triangles, above);
     for (int word = seen.first; word <= seen.last; ++word) {
         std::uint64_t met = 0;
         for (std::uint64_t rest = seen.steps[word]; rest != 0;) {

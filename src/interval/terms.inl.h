@@ -80,6 +80,22 @@ HWY_INLINE Vec3f in_tile(const Tile& tile, Vec3f v) {
             dot(splat3(tile.normal), v)};
 }
 
+/// Triangles in a tile's coordinates.
+struct TileTriangles {
+    Vec3f corner, edge1, edge2;
+    Vf error, corner_error;  ///< of u, v and w, and of a shadow's corners
+
+    TileTriangles() = default;
+    HWY_INLINE TileTriangles(const Tile& tile, const Triangles& t)
+        : corner(in_tile(tile, t.corner)),
+          edge1(in_tile(tile, t.edge1)),
+          edge2(in_tile(tile, t.edge2)) {
+        Vf place_m;
+        error = hn::Mul(error_of<false>(tile, t, place_m), splat(tile.per_m2));
+        corner_error = hn::Mul(place_m, splat(tile.per_m));
+    }
+};
+
 /// The terms as vectors to be multiplied with the sun's direction, and what they err.
 template <bool kSingle>
 struct Coefficients;
@@ -106,20 +122,30 @@ template <>
 struct Coefficients<false> {
     Vec3f u, v, det;
     Vec3f corner, edge1, edge2;
-    Vf error, corner_error;  ///< of u, v and w, and of a shadow's corners
+    Vf error, corner_error;
 
-    HWY_INLINE Coefficients(const Tile& tile, const Triangles& t, Vec3f, Lanes turned) {
-        corner = in_tile(tile, t.corner);
-        const Vec3f first = in_tile(tile, t.edge1), second = in_tile(tile, t.edge2);
+    HWY_INLINE Coefficients(const TileTriangles& t, Lanes turned)
+        : corner(t.corner), error(t.error), corner_error(t.corner_error) {
         // With its edges swapped, a triangle's terms have the other sign.
-        edge1 = chosen(turned, second, first);
-        edge2 = chosen(turned, first, second);
+        edge1 = chosen(turned, t.edge2, t.edge1);
+        edge2 = chosen(turned, t.edge1, t.edge2);
         u = cross(corner, edge2);
         v = cross(edge1, corner);
         det = cross(edge2, edge1);
-        Vf place_m;
-        error = hn::Mul(error_of<false>(tile, t, place_m), splat(tile.per_m2));
-        corner_error = hn::Mul(place_m, splat(tile.per_m));
+    }
+};
+
+/// Rectangles around shadows in a tile's plane, and what they err.
+struct Rectangles {
+    Vf low_s, low_t, high_s, high_t, error;
+
+    /// Lanes whose rectangle meets that around groups of texels: Walk::bounds.
+    HWY_INLINE Lanes meet(const float* bounds) const {
+        const Vf gap_s =
+            hn::Max(hn::Add(low_s, splat(bounds[2])), hn::Sub(splat(bounds[0]), high_s));
+        const Vf gap_t =
+            hn::Max(hn::Add(low_t, splat(bounds[3])), hn::Sub(splat(bounds[1]), high_t));
+        return hn::Le(hn::Max(gap_s, gap_t), error);
     }
 };
 
@@ -195,18 +221,20 @@ struct Terms<false> {
         return hn::Min(hn::Min(hn::Sub(u, reach_u()), hn::Sub(v, reach_v())),
                        hn::Sub(w(), reach_w()));
     }
-    /// Lanes whose shadow's rectangle meets the tile.
-    HWY_INLINE Lanes near(const Walk& walk, const Coefficients<false>& c, int step) const {
+    HWY_INLINE Rectangles rectangles(const Walk& walk, const Coefficients<false>& c,
+                                     int step) const {
         const Vf zero = splat(0.0f);
         const Vf s = hn::NegMulAdd(splat(walk.slant_s[step]), c.corner.z, c.corner.x);
         const Vf t = hn::NegMulAdd(splat(walk.slant_t[step]), c.corner.z, c.corner.y);
-        const Vf low_s = hn::Add(s, hn::Min(zero, hn::Min(edge1_s, edge2_s)));
-        const Vf low_t = hn::Add(t, hn::Min(zero, hn::Min(edge1_t, edge2_t)));
-        const Vf high_s = hn::Add(s, hn::Max(zero, hn::Max(edge1_s, edge2_s)));
-        const Vf high_t = hn::Add(t, hn::Max(zero, hn::Max(edge1_t, edge2_t)));
-        const Vf beyond = hn::Max(hn::Max(low_s, low_t), hn::Neg(hn::Min(high_s, high_t)));
-        return hn::Le(beyond,
-                      hn::MulAdd(c.corner_error, splat(walk.stretch[step]), splat(kRoundUp)));
+        return {hn::Add(s, hn::Min(zero, hn::Min(edge1_s, edge2_s))),
+                hn::Add(t, hn::Min(zero, hn::Min(edge1_t, edge2_t))),
+                hn::Add(s, hn::Max(zero, hn::Max(edge1_s, edge2_s))),
+                hn::Add(t, hn::Max(zero, hn::Max(edge1_t, edge2_t))),
+                hn::MulAdd(c.corner_error, splat(walk.stretch[step]), splat(kRoundUp - 1.0f))};
+    }
+    /// Lanes whose shadow's rectangle meets that around the lit texels.
+    HWY_INLINE Lanes near(const Walk& walk, const Coefficients<false>& c, int step) const {
+        return rectangles(walk, c, step).meet(walk.bounds[walk.lit_groups(step)]);
     }
     HWY_INLINE void negate_where(Vf signs) {
         for (Vf* term : {&u, &v, &det, &edge1_s, &edge1_t, &edge2_s, &edge2_t})

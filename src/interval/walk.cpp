@@ -24,9 +24,11 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::interval::HWY_NAMESPACE {
@@ -220,13 +222,17 @@ HWY_INLINE void push_children(Walk& walk, const Node& node, const Children& chil
             entry.bounds = {children.sides_m[lane], children.reach_m[lane],
                             (children.above >> lane & 1) != 0};
         }
-        if (child < 0) prefetch(leaves[static_cast<std::size_t>(~child)]);
+        if (kSingle && child < 0) prefetch(leaves[static_cast<std::size_t>(~child)]);
     }
 }
 
+/// What is fetched here has come when the leaves are looked at, a batch later; until then nothing
+/// of it is read, if all its triangles fit a register.
 HWY_INLINE void visit_leaf(Walk& walk, const Leaf& leaf, std::int32_t id, int first_step,
                            int last_step) {
-    for (int lane0 = 0; lane0 < kWidth && !std::isnan(leaf.corner[0][lane0]); lane0 += kLanes)
+    prefetch(leaf);
+    walk.leaves[walk.leaf_count++] = {&leaf, id, 0, first_step, last_step};
+    for (int lane0 = kLanes; lane0 < kWidth && !std::isnan(leaf.corner[0][lane0]); lane0 += kLanes)
         walk.leaves[walk.leaf_count++] = {&leaf, id, lane0, first_step, last_step};
 }
 
@@ -309,12 +315,48 @@ HWY_INLINE void set_slants(Walk& walk) {
     }
 }
 
+/// Of eight floats.
+HWY_INLINE float least_of(const float* values) {
+    const hn::CappedTag<float, 8> floats;
+    auto least = hn::Load(floats, values);
+    for (std::size_t i = hn::Lanes(floats); i < 8; i += hn::Lanes(floats))
+        least = hn::Min(least, hn::Load(floats, values + i));
+    return hn::GetLane(hn::MinOfLanes(floats, least));
+}
+
+HWY_INLINE float greatest_of(const float* values) {
+    const hn::CappedTag<float, 8> floats;
+    auto greatest = hn::Load(floats, values);
+    for (std::size_t i = hn::Lanes(floats); i < 8; i += hn::Lanes(floats))
+        greatest = hn::Max(greatest, hn::Load(floats, values + i));
+    return hn::GetLane(hn::MaxOfLanes(floats, greatest));
+}
+
+/// Of each group, and from those of fewer groups of more.
+HWY_NOINLINE void set_bounds(Walk& walk) {
+    constexpr int kGroups = kMaxTexels / 8;
+    std::fill_n(walk.bounds[0], 4, std::numeric_limits<float>::max());
+    for (int group = 0; group < kGroups; ++group) {
+        const float* const s = walk.tile.s + 8 * group;
+        const float* const t = walk.tile.t + 8 * group;
+        const float own[4] = {least_of(s), least_of(t), -greatest_of(s), -greatest_of(t)};
+        const int others = 4 << group;
+        const float* const from = walk.bounds[0];
+        float* const to = walk.bounds[1 << group];
+        for (int i = 0; i < others; i += 4) {
+            for (int j = 0; j < 4; ++j)
+                to[i + j] = std::min(from[i + j], own[j]);
+        }
+    }
+}
+
 bool walk_tree(Walk& walk) {
     walk.leaf_count = 0;
     for (Pairs* pairs : {&walk.pairs, &walk.mixed_pairs})
         pairs->records = 0;
     if (walk.tile.texels == 1) return walk_nodes<true>(walk);
     set_slants(walk);
+    set_bounds(walk);
     return walk_nodes<false>(walk);
 }
 

@@ -81,12 +81,16 @@ struct Term {
 /// tested.
 struct Pairs {
     static constexpr int kRecords = 64;
+    /// Texels of the first half of a tile; the others are the second.
+    static constexpr int kHalf = kMaxTexels / 2;
     /// So many wait before they are tested: more darken less beforehand, fewer cost more calls.
     static constexpr int kBatch = 8;
 
     int records = 0;
+    bool are_split = false;  ///< some are to be tested on different texels than others
     alignas(64) float terms[kRecords][Term::count * kWidth];
     std::uint32_t lanes[kRecords], masked[kRecords];  ///< a bit for each; those with holes
+    std::uint32_t half_lanes[kRecords][2];  ///< those to be tested on either half of the texels
     std::int32_t step[kRecords], leaf[kRecords], first_lane[kRecords];
 };
 
@@ -137,6 +141,10 @@ struct Walk {
     /// Bit i of lit[k]: texel i is not yet known to be dark at step k. Bit k of open: some are not.
     alignas(64) std::uint64_t lit[DayPath::kMaxSteps];
     std::uint64_t open[kMaxWords + 1];  ///< the last word is 0, for windows
+
+    /// Around groups of texels, bit i standing for the eight from 8i on: the least s and t, and the
+    /// greatest, negated. walk_tree() sets it for tiles of several texels.
+    alignas(64) float bounds[1 << kMaxTexels / 8][4];
 
     struct Entry {
         std::int32_t child, first_step, last_step;
@@ -223,6 +231,14 @@ struct Walk {
         const int bit = first_step % 64;
         at[0] &= ~(dark << bit);
         at[1] &= ~(dark >> 1 >> (63 - bit));
+    }
+    /// Which groups of eight texels are lit somewhere: a bit for each.
+    unsigned lit_groups(int step) const {
+        constexpr std::uint64_t kLastBits = 0x0101010101010101, kGather = 0x0102040810204080;
+        std::uint64_t any = lit[step];
+        for (const int shift : {4, 2, 1})
+            any |= any >> shift;
+        return static_cast<unsigned>((any & kLastBits) * kGather >> 56);
     }
     void darken(int step, std::uint64_t texels) {
         lit[step] &= ~texels;
