@@ -1,21 +1,23 @@
 // What the biases that nobody set do: artefacts of every technique with a depth map, at its
 // defaults, with every filter and every content, over suns and scenes.
 //
-//     bias_sweep [TECHNIQUE[/FILTER,...] [SCENE...]]
+//     bias_sweep ["TECHNIQUE[/FILTER,...] [PARAMETER=VALUE...]" [SCENE...]]
 //
 // Without arguments all such techniques, on the built-in scenes that have a sun; with filters or
-// contents, those alone. Other scenes are named by their files, FILE.obj:z for those whose Z points
-// up. Suns of five elevations (5 to 85 degrees) and four azimuths, 640x360, maps of 1024 and of
-// 2048 texels. Prints the mean RMSE to the sun's disc and, for each elevation, the worst
-// artefact_lit and artefact_shadow over all scenes and azimuths, in millionths, and where the worst
-// of all was. The aim is at most 1000 and 300. What no bias mends is left out of them: filters that
-// do not know how wide the sun is are judged by a sun without width, since where most of its disc
-// is hidden, but not its middle, they are lit. The last figures are theirs by the disc.
+// contents, those alone; with parameters, at these. Other scenes are named by their files,
+// FILE.obj:z for those whose Z points up. Suns of five elevations (5 to 85 degrees) and four
+// azimuths, 640x360, maps of 1024 and of 2048 texels. Prints the mean RMSE to the sun's disc and,
+// for each elevation, the worst artefact_lit and artefact_shadow over all scenes and azimuths, in
+// millionths, and where the worst of all was. The aim is at most 1000 and 300. What no bias mends
+// is left out of them: filters that do not know how wide the sun is are judged by a sun without
+// width, since where most of its disc is hidden, but not its middle, they are lit. The last figures
+// are theirs by the disc.
 
 #include <gnomon/error.h>
 #include <gnomon/gnomon.h>
 
 #include "bench_main.h"
+#include "engine_view.h"
 
 #include <fmt/format.h>
 
@@ -25,6 +27,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,12 +79,16 @@ struct Judge {
     }
 };
 
-/// `only` is TECHNIQUE[/READING,...] or empty for all.
-std::vector<Contestant> contestants(Context& context, const std::string& only) {
+/// `spec` is "TECHNIQUE[/READING,...] [PARAMETER=VALUE...]", or empty for all.
+std::vector<Contestant> contestants(Context& context, const std::string& spec) {
     std::vector<Contestant> result;
+    std::istringstream words(spec);
+    std::string only;
+    words >> only;
     const std::string technique = only.substr(0, only.find('/'));
     const std::string readings =
         technique.size() < only.size() ? "," + only.substr(technique.size() + 1) + "," : "";
+    const Params common = technique.empty() ? Params() : params_of(technique, words);
     for (const TechniqueInfo& info : techniques()) {
         if (!technique.empty() && info.name != technique) continue;
         const std::vector<ParamInfo>& params = info.params();
@@ -96,8 +103,10 @@ std::vector<Contestant> contestants(Context& context, const std::string& only) {
                 contestant.technique = info.name;
                 contestant.reading = word;
                 contestant.map_size = map_size;
-                contestant.made =
-                    make_technique(context, info.name, {{param, word}, {"map_size", map_size}});
+                Params params = common;
+                params.set(param, word);
+                params.set("map_size", map_size);
+                contestant.made = make_technique(context, info.name, params);
                 result.push_back(std::move(contestant));
             }
         };
