@@ -99,7 +99,7 @@ void set_heights(Tile& tile, const Tree& tree, std::span<const Receiver> receive
                  double height_m) {
     const DVec3 normal(receivers[0].normal_ws);
     const DVec3 normal_magnitudes = magnitudes(normal);
-    double lift_m = 0.0, magnitude_m = 0.0;
+    double magnitude_m = 0.0;
     tile.low_height_m = tile.low_magnitude_m = std::numeric_limits<double>::infinity();
     tile.high_height_m = tile.high_magnitude_m = -tile.low_height_m;
     for (const Receiver& receiver : receivers) {
@@ -110,10 +110,10 @@ void set_heights(Tile& tile, const Tree& tree, std::span<const Receiver> receive
         const double along_normal = glm::dot(normal_magnitudes, magnitudes(position));
         tile.low_magnitude_m = std::min(tile.low_magnitude_m, along_normal);
         tile.high_magnitude_m = std::max(tile.high_magnitude_m, along_normal);
-        const DVec3 lift = DVec3(trace::lifted_position_ws(receiver)) - position;
-        lift_m = std::max(lift_m, sum_of_magnitudes(lift));
         magnitude_m = std::max(magnitude_m, sum_of_magnitudes(position));
     }
+    // Of lifted_position_ws(), whose sum is rounded as well.
+    const double lift_m = kUnitRoundoff * (2.0 * sum_of_magnitudes(normal) + 1.0) * magnitude_m;
     const double tolerated_m =
         trace::kHeightRoundings * kUnitRoundoff * (tree.magnitude_m() + magnitude_m);
     tile.touch_m = static_cast<float>(
