@@ -5,20 +5,14 @@
 
 // Casters with holes into the layers of a map, each instance into its own.
 
-#include "raster/scene.shared.h"
+#include "visibility/caster_attributes.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in mat4 clip_from_local;
 layout(location = 5) in uint layer;
-layout(location = 0) out vec2 texcoord;
-layout(location = 1) out vec4 color;
-
-layout(set = 0, binding = 0, scalar) readonly buffer Attributes { VertexAttributes attributes[]; };
 
 void main() {
     gl_Position = clip_from_local * vec4(position, 1.0);
     gl_Layer = int(layer);
-    VertexAttributes vertex = attributes[gl_VertexIndex];
-    texcoord = vertex.texcoord;
-    color = unpackUnorm4x8(vertex.color);
+    set_attributes();
 }
