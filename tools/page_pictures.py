@@ -131,8 +131,9 @@ PICTURES = {
         f"torches --lighting {lighting} --vertex_occlusion.tessellate 0.3" for lighting in ("vertex_flat", "vertex")]),
     "auto": ("1280x720", (0, 450, 420, 650), 3, [
         "gas-station", f"gas-station {AUTO_GPU}", "gas-station --technique pssm"]),
-    "auto-fails": ("1920x1080", (1000, 500, 1360, 640), 3, [
-        "gas-station", f"gas-station {AUTO_GPU}", "gas-station --technique pssm --pssm.filter pcss"]),
+    "auto-fails": ("1920x1080", (1130, 500, 1330, 640), 3, [
+        "gas-station", f"gas-station {AUTO_GPU}",
+        "gas-station --technique pssm --pssm.filter pcss --pssm.splits 6 --pssm.map_size 4096"]),
 }
 
 # Of a report: where the two techniques are beside the truth.

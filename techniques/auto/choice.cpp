@@ -20,7 +20,7 @@ int map_size_for(Extent size) {
 }
 
 /// Within a split the farthest pixel is no more than so many times as large as the nearest.
-constexpr double kPixelSpread = 4.0;
+constexpr double kPixelSpread = 2.0;
 constexpr int kMostSplits = 6;
 
 int splits_for(const Camera& camera, DepthRange seen) {
