@@ -395,16 +395,18 @@ class LostIntervals(CliTest):
         path.write_text("\n".join(lines), encoding="utf-8")
         return path
 
-    def render(self, slats):
-        result = gnomon("render", self.scene(slats), "-o", self.folder / "x.png", *self.FLAGS, *self.PARAMETERS,
-                        *self.VIEW)
+    def warnings(self, command, slats, *flags):
+        result = gnomon(command, self.scene(slats), *flags, *self.PARAMETERS, *self.VIEW)
         self.assertEqual(result.returncode, DONE, result.stderr)
         return [line for line in result.stderr.splitlines() if line.startswith("warning: ") and "gaps" in line]
 
     def test_are_a_warning(self):
-        self.assertEqual(self.render(self.SLATS // 4), [])
-        self.assertRegex("".join(self.render(self.SLATS)),
-                         r"^warning: occlusion_interval_maps, sun: \d+ gaps closed for want of pairs: \d+\.\d+ % of")
+        render = ("-o", self.folder / "x.png", *self.FLAGS)
+        self.assertEqual(self.warnings("render", self.SLATS // 4, *render), [])
+        for told in (self.warnings("render", self.SLATS, *render),
+                     self.warnings("bench", self.SLATS, "--techniques", "occlusion_interval_maps", "--frames", 1)):
+            self.assertRegex("".join(told), r"^warning: occlusion_interval_maps, sun: \d+ gaps closed for want of "
+                                            r"pairs: \d+\.\d+ % of")
 
     def test_are_in_the_report(self):
         told = self.assert_works("compare", self.scene(self.SLATS), "-o", self.folder / "report",

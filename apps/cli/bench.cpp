@@ -121,6 +121,10 @@ void run_bench(const BenchFlags& flags, const Session& session, ConsoleProgress&
         bench_techniques(context, scene, options, flags.frames, progress);
     progress.check();
     progress.clear();
+    for (const BenchResult& result : results) {
+        if (result.supported && !result.note.empty())
+            print_warning(fmt::format("{}, {}: {}", result.technique, result.light, result.note));
+    }
     print(bench_text(results));
     check_validation(context);
     if (flags.json.empty()) return;

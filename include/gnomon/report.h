@@ -101,7 +101,7 @@ struct BenchResult {
     double prepare_ms = 0.0;
     std::uint64_t memory_bytes = 0;
     bool supported = true;
-    std::string note;
+    std::string note;  ///< why it is not supported, or RenderStats::warning
 };
 
 /// Times each chosen technique on the first light, `frames` renders after a warm-up of two.

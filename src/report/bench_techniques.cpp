@@ -30,6 +30,7 @@ BenchResult bench(Context& context, const Frame& frame, const TechniqueChoice& c
     result.gpu_ms = timing.gpu_ms;
     result.passes = std::move(timing.passes);
     result.memory_bytes = timing.memory_bytes;
+    result.note = technique->last_render().warning;
     return result;
 }
 
