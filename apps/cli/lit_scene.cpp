@@ -78,7 +78,7 @@ LitScene load_lit(const ViewFlags& flags, const Session& session, ConsoleProgres
 void look_up(const std::shared_ptr<const IntervalBake>& bake,
              std::vector<TechniqueChoice>& techniques) {
     for (TechniqueChoice& choice : techniques) {
-        if (choice.name == "occlusion_interval_maps") choice.bake = bake;
+        if (choice.name == bake_technique().name) choice.bake = bake;
     }
 }
 

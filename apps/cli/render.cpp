@@ -88,7 +88,7 @@ VertexLightingOptions vertex_options(const RenderFlags& flags, const Session& se
 
 /// The technique of --technique, or auto; for the truth none.
 std::vector<TechniqueChoice> choose_technique(const RenderFlags& flags, const Session& session) {
-    const std::string otherwise = names_bake(flags.view) ? "occlusion_interval_maps" : "auto";
+    const std::string otherwise(names_bake(flags.view) ? bake_technique().name : "auto");
     const std::string name = flags.technique.empty() ? otherwise : flags.technique;
     find_technique(name);  // one, not a list or "all"
     const bool is_truth = flags.samples != 0;

@@ -14,7 +14,7 @@ namespace gnomon {
 struct TechniqueChoice {
     std::string name;
     Params params;
-    /// What occlusion_interval_maps looks up instead of baking; others ignore it.
+    /// What bake_technique() looks up instead of baking; others ignore it.
     std::shared_ptr<const IntervalBake> bake = nullptr;
 };
 

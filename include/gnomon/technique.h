@@ -122,6 +122,8 @@ struct TechniqueInfo {
     Penumbra penumbra = Penumbra::none;    ///< with default parameters
     bool honors_alpha = true;              ///< false: alpha masks count as solid
     bool self_shadows = true;              ///< false: no instance casts shadows on itself
+    /// The parameters that say how a bake is looked up; empty: it looks up none.
+    std::span<const std::string_view> lookup_params = {};
     const std::vector<ParamInfo>& (*params)() = nullptr;
     std::unique_ptr<Technique> (*make)(Context&, const Params&) = nullptr;
 };
@@ -137,9 +139,12 @@ const TechniqueInfo& find_technique(std::string_view name);
 std::unique_ptr<Technique> make_technique(Context& context, std::string_view name = "auto",
                                           const Params& params = {});
 
-/// The technique occlusion_interval_maps for a bake that is there: it looks that up and bakes
-/// nothing, for frames of the bake's scene and with lights on its path. Of its parameters `lookup`
-/// and `weight` may be set; others are the bake's. As in the page of write_web() the light covers
+/// The one with lookup_params.
+const TechniqueInfo& bake_technique();
+
+/// The technique bake_technique() for a bake that is there: it looks that up and bakes nothing, for
+/// frames of the bake's scene and with lights on its path. Of its parameters its lookup_params may
+/// be set; others are the bake's. As in the page of write_web() the light covers
 /// disc_width_steps(). Texels are asked about their centres, and there are no fine cells, which
 /// files do not hold.
 ///

@@ -1,7 +1,6 @@
 #include "report/timing.h"
 
 #include "base/parallel.h"
-#include "technique/stored_bake.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -124,14 +123,15 @@ std::vector<TechniqueChoice> chosen_techniques(const CompareOptions& options) {
 }
 
 bool looks_up_bake(const TechniqueChoice& choice) {
-    return choice.bake && choice.name == kBakeTechnique;
+    return choice.bake && !find_technique(choice.name).lookup_params.empty();
 }
 
 std::map<std::string, ParamValue> all_parameters(const TechniqueInfo& info,
                                                  const TechniqueChoice& chosen) {
     std::map<std::string, ParamValue> all;
     for (const ParamInfo& param : info.params()) {
-        if (looks_up_bake(chosen) && std::ranges::count(kLookupParams, param.name) == 0) continue;
+        if (looks_up_bake(chosen) && std::ranges::count(info.lookup_params, param.name) == 0)
+            continue;
         all[param.name] = param.default_value;
     }
     for (const auto& [name, value] : chosen.params.values()) {

@@ -33,6 +33,11 @@ bool supports(LightKinds kinds, const Light& light) {
     return std::ranges::count(light_kinds(kinds), light_kind(light)) != 0;
 }
 
+const TechniqueInfo& bake_technique() {
+    return *std::ranges::find_if(
+        techniques(), [](const TechniqueInfo& info) { return !info.lookup_params.empty(); });
+}
+
 const TechniqueInfo& find_technique(std::string_view name) {
     std::vector<std::string_view> names;
     for (const TechniqueInfo& info : techniques()) {

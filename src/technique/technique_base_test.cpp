@@ -32,8 +32,12 @@ TEST(Supports, TellsTheKindsOfLightApart) {
 
 TEST(FindTechnique, KnowsThemAllByName) {
     ASSERT_FALSE(techniques().empty());
-    for (const TechniqueInfo& info : techniques())
+    for (const TechniqueInfo& info : techniques()) {
         EXPECT_EQ(&find_technique(info.name), &info);
+        EXPECT_EQ(!info.lookup_params.empty(), &info == &bake_technique()) << info.name;
+        for (const std::string_view param : info.lookup_params)
+            EXPECT_EQ(find_param(info.name, info.params(), std::string(param)).name, param);
+    }
 }
 
 TEST(FindTechnique, SuggestsTheNearestName) {

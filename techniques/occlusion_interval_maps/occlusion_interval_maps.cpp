@@ -17,12 +17,12 @@
 #include "lightmap/surface.h"
 #include "occlusion_interval_maps.comp.spv.h"
 #include "technique/param_table.h"
-#include "technique/stored_bake.h"
 #include "technique/technique_base.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -319,15 +319,19 @@ private:
     bake::PathPlace at_;           ///< of the frame's light
 };
 
+/// How maps are looked up; the others say how they are baked.
+constexpr std::array<std::string_view, 2> kLookupParams{"lookup", "weight"};
+
 }  // namespace
 
 const TechniqueInfo& occlusion_interval_maps_info() {
     static const TechniqueInfo info{
-        .name = kBakeTechnique,
+        .name = "occlusion_interval_maps",
         .title = "Occlusion interval maps",
         .source = "donnelly2004",
         .lights = LightKinds::directional,
         .penumbra = Penumbra::physical,
+        .lookup_params = kLookupParams,
         .params = []() -> const std::vector<ParamInfo>& { return param_table().infos(); },
         .make = [](Context& context, const Params& params) -> std::unique_ptr<Technique> {
             return std::make_unique<OcclusionIntervalMaps>(context, param_table().options(params));
