@@ -103,10 +103,10 @@ std::vector<Contestant> contestants(Context& context, const std::string& spec) {
                 contestant.technique = info.name;
                 contestant.reading = word;
                 contestant.map_size = map_size;
-                Params params = common;
-                params.set(param, word);
-                params.set("map_size", map_size);
-                contestant.made = make_technique(context, info.name, params);
+                Params all = common;
+                all.set(param, word);
+                all.set("map_size", map_size);
+                contestant.made = make_technique(context, info.name, all);
                 result.push_back(std::move(contestant));
             }
         };
