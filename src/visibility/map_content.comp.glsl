@@ -4,8 +4,12 @@
 
 // From a map's depths to its contents.
 
+#include "visibility/contents/exponential.glsl"
+#include "visibility/contents/exponential_variance.glsl"
+#include "visibility/contents/moments.glsl"
+#include "visibility/contents/packed.glsl"
+#include "visibility/contents/packed_two.glsl"
 #include "visibility/map_content.glsl"
-#include "visibility/map_moments.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint kContent = kContentVariance;

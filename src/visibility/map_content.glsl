@@ -26,24 +26,6 @@ float depth_of(MapSpace space, vec2 uv, float distance) {
     return space.reach > 0.0 ? space.reach / max(along, space.reach) : 1.0 - distance;
 }
 
-// Four bytes, the first of the most weight.
-vec4 packed_in_four(float value) {
-    vec4 scaled = fract(value * vec4(1.0, 256.0, 65536.0, 16777216.0) * (1.0 - 1.0 / 16777216.0));
-    return floor(256.0 * scaled) / 255.0;
-}
-
-float unpacked_from_four(vec4 bytes) {
-    return dot(bytes, 255.0 / 256.0 * vec4(1.0, 1.0 / 256.0, 1.0 / 65536.0, 1.0 / 16777216.0));
-}
-
-// The whole of 256ths, and the rest.
-vec4 packed_in_two(float value) {
-    float scaled = min(256.0 * value, 255.998);
-    return vec4(floor(scaled) / 255.0, vec3(fract(scaled)));
-}
-
-float unpacked_from_two(vec4 bytes) { return (255.0 * bytes.x + bytes.y) / 256.0; }
-
 // How far off a stored distance may be for its number of bits.
 float quantum(uint content) {
     return content == kContentPacked ? 1.0 / 8388608.0

@@ -7,6 +7,8 @@
 #ifndef GNOMON_VISIBILITY_MAP_FILTER_GLSL
 #define GNOMON_VISIBILITY_MAP_FILTER_GLSL
 
+#include "visibility/contents/packed.glsl"
+#include "visibility/contents/packed_two.glsl"
 #include "visibility/map_content.glsl"
 #include "visibility/map_lookup.shared.h"
 
@@ -109,15 +111,6 @@ vec4 lit_quad(vec4 stored, float size, MapBias bias, MapPoint point, vec2 corner
     return vec4(lessThanEqual(distances, stored));
 }
 
-float lit_nearest(sampler2DArray map, float size, MapBias bias, MapPoint point) {
-    vec2 texel = clamp(floor(point.texel), 0.0, size - 1.0);
-    vec2 d = texel + 0.5 - point.texel;
-    float plane = plane_depths(point, vec4(d.x), vec4(d.y)).x;
-    float stored = stored_distance(map, size, texel, point);
-    if (kStoresDepths) return plane >= stored ? 1.0 : 0.0;
-    return compared_distance(point, bias, size, texel, plane) <= stored ? 1.0 : 0.0;
-}
-
 float mixed(vec4 quad, vec2 f) { return mix(mix(quad.w, quad.z, f.x), mix(quad.x, quad.y, f.x), f.y); }
 
 float lit_bilinear(sampler2DArray map, float size, MapBias bias, MapPoint point, vec2 at) {
@@ -126,147 +119,15 @@ float lit_bilinear(sampler2DArray map, float size, MapBias bias, MapPoint point,
     return mixed(lit_quad(stored, size, bias, point, corner), at - 0.5 - corner);
 }
 
-float lit_hardware_2x2(sampler2DArray map, float size, MapBias bias, MapPoint point) {
-    vec2 corner = floor(point.texel - 0.5);
-    vec4 stored = stored_quad(map, size, point, corner);
-    point = ended(point, size, chosen(stored, lessThan(point.gradient, vec2(0.0))));
-    return mixed(lit_quad(stored, size, bias, point, corner), point.texel - 0.5 - corner);
-}
-
-// Four bilinear comparisons side by side, which are the 3x3 nearest ones with weights 1-f, 1, f.
-float lit_box_3x3(sampler2DArray map, float size, MapBias bias, MapPoint point) {
-    vec2 corner = floor(point.texel) - 1.0;
-    vec2 f = point.texel - corner - 1.0;
-    vec4 a = stored_quad(map, size, point, corner);
-    vec4 b = stored_quad(map, size, point, corner + vec2(2.0, 0.0));
-    vec4 c = stored_quad(map, size, point, corner + vec2(0.0, 2.0));
-    vec4 d = stored_quad(map, size, point, corner + 2.0);
-    vec2 fallen = fallen_texel(point) - corner;
-    bvec2 last = greaterThan(fallen, vec2(1.5));
-    vec4 quad = last.y ? (last.x ? d : c) : (last.x ? b : a);
-    point = ended(point, size, chosen(quad, equal(fallen, vec2(1.0))));
-    a = lit_quad(a, size, bias, point, corner);
-    b = lit_quad(b, size, bias, point, corner + vec2(2.0, 0.0));
-    c = lit_quad(c, size, bias, point, corner + vec2(0.0, 2.0));
-    d = lit_quad(d, size, bias, point, corner + 2.0);
-    vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
-    float row0 = dot(wx, vec3(a.w, a.z, b.w));
-    float row1 = dot(wx, vec3(a.x, a.y, b.x));
-    float row2 = dot(wx, vec3(c.w, c.z, d.w));
-    return ((1.0 - f.y) * row0 + row1 + f.y * row2) / 4.0;
-}
-
-// Nine bilinear comparisons side by side, which are the 4x4 nearest ones with weights 1-f, 1, 1, f, without a
-// step where the receiver moves to the next texel.
-float lit_box_4x4(sampler2DArray map, float size, MapBias bias, MapPoint point) {
-    vec2 corner = floor(point.texel - 0.5) - 1.0;
-    vec2 f = point.texel - corner - 1.5;
-    vec4 a = stored_quad(map, size, point, corner);
-    vec4 b = stored_quad(map, size, point, corner + vec2(2.0, 0.0));
-    vec4 c = stored_quad(map, size, point, corner + vec2(0.0, 2.0));
-    vec4 d = stored_quad(map, size, point, corner + 2.0);
-    vec4 middle = vec4(c.z, d.w, b.x, a.y);
-    point = ended(point, size, chosen(middle, lessThan(point.gradient, vec2(0.0))));
-    a = lit_quad(a, size, bias, point, corner);
-    b = lit_quad(b, size, bias, point, corner + vec2(2.0, 0.0));
-    c = lit_quad(c, size, bias, point, corner + vec2(0.0, 2.0));
-    d = lit_quad(d, size, bias, point, corner + 2.0);
-    vec4 wx = vec4(1.0 - f.x, 1.0, 1.0, f.x);
-    float row0 = dot(wx, vec4(a.w, a.z, b.w, b.z));
-    float row1 = dot(wx, vec4(a.x, a.y, b.x, b.y));
-    float row2 = dot(wx, vec4(c.w, c.z, d.w, d.z));
-    float row3 = dot(wx, vec4(c.x, c.y, d.x, d.y));
-    return ((1.0 - f.y) * row0 + row1 + row2 + f.y * row3) / 9.0;
-}
-
 // The point, for filters whose taps are anywhere.
 MapPoint ended_by_fetch(sampler2DArray map, float size, MapPoint point) {
     return ended(point, size, stored_distance(map, size, fallen_texel(point), point));
-}
-
-// Four of the sixteen taps, the others by turns in squares of four pixels, so that the eye averages them.
-// M. Bunnell, F. Pellacini, "Shadow Map Antialiasing", GPU Gems 2004, chapter 11.
-float lit_dithered_4(sampler2DArray map, float size, MapBias bias, MapPoint point, uvec2 pixel) {
-    uvec2 turn = pixel & 1u;
-    turn.y ^= turn.x;
-    vec2 first = point.texel + vec2(turn) - 1.5;
-    float lit = lit_bilinear(map, size, bias, point, first);
-    lit += lit_bilinear(map, size, bias, point, first + vec2(2.0, 0.0));
-    lit += lit_bilinear(map, size, bias, point, first + vec2(0.0, 2.0));
-    lit += lit_bilinear(map, size, bias, point, first + 2.0);
-    return 0.25 * lit;
-}
-
-// All sixteen, or none.
-float lit_taps_16(sampler2DArray map, float size, MapBias bias, MapPoint point, uint taps) {
-    float lit = 0.0;
-    for (uint i = 0u; i < taps; ++i)
-        lit += lit_bilinear(map, size, bias, point, point.texel + vec2(i % 4u, i / 4u) - 1.5);
-    return lit / 16.0;
 }
 
 // Of a pixel, in [0, 1): neighbours differ as much as they can. J. Jimenez, "Next Generation Post
 // Processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014 courses.
 float gradient_noise(uvec2 pixel) {
     return fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
-}
-
-// Evenly over the unit disc, turned by a part of a whole turn: H. Vogel, "A Better Way to Construct the
-// Sunflower Head", Mathematical Biosciences 44, 1979.
-vec2 disc_sample(uint i, float turn) {
-    const float kGoldenAngle = 2.39996323;
-    const float kWholeTurn = 6.28318531;
-    float angle = kGoldenAngle * float(i) + kWholeTurn * turn;
-    return sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(angle), sin(angle));
-}
-
-// Evenly over the square from -0.5 to 0.5, moved by a part of its side: the additive recurrence of the
-// plastic number.
-vec2 square_sample(uint i, float shift) {
-    return fract(float(i) * vec2(0.75487767, 0.56984029) + vec2(shift, fract(7.0 * shift))) - 0.5;
-}
-
-// Bilinear taps, `taps` of kTaps or none, over a disc that `spread` makes an ellipse of, in texels.
-float lit_disc(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread,
-               float turn, uint taps) {
-    float lit = 0.0;
-    for (uint i = 0u; i < taps; ++i)
-        lit += lit_bilinear(map, size, bias, point, point.texel + spread * disc_sample(i, turn));
-    return lit / float(kTaps);
-}
-
-// Bilinear taps over a parallelogram of the sides `spread`, in texels: W. Reeves, D. Salesin, R. Cook,
-// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987.
-float lit_footprint(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread,
-                    float shift, uint taps) {
-    float lit = 0.0;
-    for (uint i = 0u; i < taps; ++i)
-        lit += lit_bilinear(map, size, bias, point, point.texel + spread * square_sample(i, shift));
-    return lit / float(kTaps);
-}
-
-// The mean depth of what hides the receiver within an ellipse of the map; 0 where nothing does. R. Fernando,
-// "Percentage-Closer Soft Shadows", SIGGRAPH 2005 sketches.
-float blocker_depth(sampler2DArray map, float size, MapBias bias, MapPoint point, mat2 spread,
-                    float turn, uint taps) {
-    float sum = 0.0;
-    float blockers = 0.0;
-    for (uint i = 0u; i < taps; ++i) {
-        vec2 at = point.texel + spread * disc_sample(i, turn);
-        vec2 texel = clamp(floor(at), 0.0, size - 1.0);
-        vec2 d = texel + 0.5 - point.texel;
-        float plane = plane_depths(point, vec4(d.x), vec4(d.y)).x;
-        float stored = stored_distance(map, size, texel, point);
-        float depth = stored;
-        bool hides = stored > plane;
-        if (!kStoresDepths) {
-            depth = depth_of(point.space, (texel + 0.5) / size, stored);
-            hides = compared_distance(point, bias, size, texel, plane) > stored;
-        }
-        sum += hides ? depth : 0.0;
-        blockers += hides ? 1.0 : 0.0;
-    }
-    return sum / max(blockers, 1.0);
 }
 
 #endif

@@ -19,10 +19,20 @@ layout(constant_id = 8) const uint kListed = 0u;  // only blocks of pixels that 
 
 layout(set = 0, binding = 7) uniform usampler2DArray map_ids;  // of kContentObjectId
 
+#include "visibility/contents/exponential.glsl"
+#include "visibility/contents/exponential_variance.glsl"
+#include "visibility/contents/moments.glsl"
+#include "visibility/contents/variance.glsl"
+#include "visibility/filters/box_3x3.glsl"
+#include "visibility/filters/box_4x4.glsl"
+#include "visibility/filters/disc.glsl"
+#include "visibility/filters/dithered_4.glsl"
+#include "visibility/filters/footprint.glsl"
+#include "visibility/filters/hardware_2x2.glsl"
+#include "visibility/filters/nearest.glsl"
+#include "visibility/filters/taps_16.glsl"
 #include "visibility/map_bias.glsl"
 #include "visibility/map_bounds.glsl"
-#include "visibility/map_filter.glsl"
-#include "visibility/map_moments.glsl"
 #include "visibility/receiver.glsl"
 
 layout(set = 0, binding = 0) uniform sampler2D depths;
@@ -34,6 +44,8 @@ layout(set = 0, binding = 5) uniform sampler2DArray bounds;
 layout(set = 0, binding = 6, scalar) readonly buffer Blocks { uint blocks[]; };
 layout(set = 0, binding = 8, rg32ui) uniform readonly uimage2D receiver_ids;
 layout(push_constant, scalar) uniform Push { MapLookupPush push; };
+
+#include "visibility/filters/pcss.glsl"
 
 // Of pixels without a receiver, whose values are not used: keeps their places finite.
 const float kLeastDepth = 1e-12;
@@ -99,49 +111,6 @@ float lit_by_blurred(MapPoint point) {
             break;
     }
     return clamp((lit - reading.bleeding) / (1.0 - reading.bleeding), 0.0, 1.0);
-}
-
-// Texels of the map that the light, seen from the receiver, covers for each metre across it.
-mat2 texels_across_light(TexelAt texel, vec3 to_light) {
-    vec3 aside = abs(to_light.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 across = normalize(cross(to_light, aside));
-    vec3 other = cross(to_light, across);
-    return mat2(dot(texel.u, across), dot(texel.v, across), dot(texel.u, other), dot(texel.v, other));
-}
-
-// How far PCSS searches, in metres across the light: no penumbra of the sun is wider.
-float pcss_search_m(MapPoint point, TexelAt texel, vec3 to_light) {
-    float most_m = frame.reading.most_texels * texel.side_m;
-    float depth_per_m = max(dot(texel.z, to_light), 1e-20);
-    float search_m = frame.receivers.light.radius * (1.0 - point.depth) / depth_per_m;
-    return kLightKind == kLightDirectional ? min(search_m, most_m) : most_m;
-}
-
-// The map's ellipse of a disc of this radius, no narrower than a texel whichever way texels are long:
-// a matrix to it from the unit disc. As P. Heckbert, "Fundamentals of Texture Mapping and Image Warping",
-// 1989, adds the footprint of a texel to that of a pixel.
-mat2 at_least_a_texel(float radius_m, mat2 texels_per_m) {
-    mat2 spread = radius_m * texels_per_m;
-    mat2 squared = spread * transpose(spread) + mat2(1.0);
-    float along_u = sqrt(squared[0][0]);
-    float shear = squared[0][1] / along_u;
-    return mat2(along_u, shear, 0.0, sqrt(max(squared[1][1] - shear * shear, 1.0)));
-}
-
-// The light's own penumbra: as wide as the light looks from what hides it, in metres across the light.
-float lit_pcss(MapPoint point, TexelAt texel, vec3 to_light, float turn, uint taps) {
-    float most_m = frame.reading.most_texels * texel.side_m;
-    float depth_per_m = max(dot(texel.z, to_light), 1e-20);
-    bool at_infinity = kLightKind == kLightDirectional;
-    mat2 texels = texels_across_light(texel, to_light);
-    mat2 search = at_least_a_texel(pcss_search_m(point, texel, to_light), texels);
-    float blocker = blocker_depth(map, frame.size_texels, frame.bias, point, search, turn, taps);
-    float behind = at_infinity ? (blocker - point.depth) / depth_per_m
-                               : blocker / max(point.depth, 1e-20) - 1.0;
-    float penumbra_m = clamp(frame.receivers.light.radius * behind, 0.0, most_m);
-    float lit = lit_disc(map, frame.size_texels, frame.bias, point,
-                         at_least_a_texel(penumbra_m, texels), turn, taps);
-    return blocker > 0.0 ? lit : 1.0;
 }
 
 // How far from the receiver are the centres of what the filter reads, in texels along the axes.

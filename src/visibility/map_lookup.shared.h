@@ -58,7 +58,7 @@ struct MapBias {
     float distance_offset;  // and less by this
 };
 
-/// How a map's contents are read: map_filter.glsl, map_moments.glsl.
+/// How a map's contents are read: filters/*.glsl, contents/*.glsl.
 struct MapReadingFrame {
     float radius_texels;   // of the disc
     float most_texels;     // PCSS reaches no farther

@@ -1,8 +1,8 @@
 // Shadow map: one depth map fitted to what the camera sees, for the sun and for spots.
 // L. Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978; W. Reeves et al.,
-// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987. Filters and biases, which all
-// techniques with depth maps share, name their sources in visibility/map_filter.glsl and
-// map_bias.glsl.
+// "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987. Contents, filters and biases,
+// which all techniques with depth maps share, name their sources in visibility/contents,
+// visibility/filters and visibility/map_bias.glsl.
 
 #include "technique/map_technique.h"
 

@@ -1,11 +1,7 @@
-// Light from moments of a map's distances, which can be blurred: bounds of how much of what was averaged lies
-// before the receiver. W. Donnelly, A. Lauritzen, "Variance Shadow Maps", I3D 2006; A. Lauritzen,
-// M. McCool, "Layered Variance Shadow Maps", GI 2008, for exponential warps and the cure of light bleeding;
-// T. Annen et al., "Exponential Shadow Maps", GI 2008; C. Peters, R. Klein, "Moment Shadow Mapping",
-// I3D 2015.
+// Four moments of distances: C. Peters, R. Klein, "Moment Shadow Mapping", I3D 2015.
 
-#ifndef GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
-#define GNOMON_VISIBILITY_MAP_MOMENTS_GLSL
+#ifndef GNOMON_VISIBILITY_CONTENTS_MOMENTS_GLSL
+#define GNOMON_VISIBILITY_CONTENTS_MOMENTS_GLSL
 
 // Moments are moved this far towards those of an even spread, lest rounding make them impossible: less
 // lights the ground behind a caster's foot by up to 50 texels, more everywhere lightens shadows.
@@ -15,33 +11,6 @@ const float kMomentBias = 1e-5;
 // end, as where casters are clamped to a warped map's near plane, is without the three places that the problem
 // needs; with more in the middle (Peters' and Klein's 0.625) light leaks three texels under a caster's foot.
 const vec4 kSpreadMoments = vec4(0.0, 0.8, 0.0, 0.8);
-
-// exp(c d) of a distance from -1 to 1, over exp(c).
-float warped(float along, float exponent) { return exp(2.0 * exponent * (along - 1.0)); }
-
-// exp(c d) and -exp(-c d) of distances from -1 to 1, and their squares: two bounds, of which the lower
-// counts.
-vec4 warped_moments(float along, float exponent) {
-    float d = 2.0 * along - 1.0;
-    float positive = exp(exponent * d);
-    float negative = -exp(-exponent * d);
-    return vec4(positive, positive * positive, negative, negative * negative);
-}
-
-// What can lie behind `value` at most, when mean and mean square are known: Cantelli's inequality.
-float most_behind(vec2 moments, float value, float least_variance) {
-    float variance = max(moments.y - moments.x * moments.x, least_variance);
-    float before = max(value - moments.x, 0.0);
-    return variance / (variance + before * before);
-}
-
-float lit_by_warped_variance(vec4 moments, float along, float exponent, float least_variance) {
-    vec4 receiver = warped_moments(along, exponent);
-    // A step in distance is a step in its warp, longer by its slope.
-    vec2 step = exponent * vec2(receiver.x, receiver.z);
-    return min(most_behind(moments.xy, receiver.x, least_variance * step.x * step.x),
-               most_behind(moments.zw, receiver.z, least_variance * step.y * step.y));
-}
 
 // Of a distance from -1 to 1: of one from 0 to 1 what rounding leaves of their differences is a sixteenth as
 // good, and shows as specks of light in shadows.
