@@ -77,7 +77,8 @@ HWY_INLINE void split(Pairs& pairs, int record, const Rectangles& rectangles, co
 
 /// Triangles that have the whole tile on one side, or, if `kAbove`, that are above its plane: the
 /// lines of rays hit them where the rays do, so that det tells on which side each texel is. Near 0
-/// its sign may be wrong; then no term is greater than what det errs.
+/// its sign may be wrong; then no term is greater than what det errs, and the errors of det, u and
+/// v together are what `error` bounds, so that such a hit is still possible.
 template <bool kAbove>
 HWY_INLINE void cast_whole(Walk& walk, const LeafVisit& visit, const SeenTriangles<false>& seen,
                            Lanes lanes, const Coefficients<false>& coefficients) {

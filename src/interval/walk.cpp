@@ -315,21 +315,20 @@ HWY_INLINE void set_slants(Walk& walk) {
     }
 }
 
-/// Of eight floats.
-HWY_INLINE float least_of(const float* values) {
-    const hn::CappedTag<float, 8> floats;
-    auto least = hn::Load(floats, values);
-    for (std::size_t i = hn::Lanes(floats); i < 8; i += hn::Lanes(floats))
-        least = hn::Min(least, hn::Load(floats, values + i));
-    return hn::GetLane(hn::MinOfLanes(floats, least));
-}
+struct Ends {
+    float least, greatest;
+};
 
-HWY_INLINE float greatest_of(const float* values) {
+/// Of eight floats.
+HWY_INLINE Ends ends_of(const float* values) {
     const hn::CappedTag<float, 8> floats;
-    auto greatest = hn::Load(floats, values);
-    for (std::size_t i = hn::Lanes(floats); i < 8; i += hn::Lanes(floats))
+    auto least = hn::Load(floats, values), greatest = least;
+    for (std::size_t i = hn::Lanes(floats); i < 8; i += hn::Lanes(floats)) {
+        least = hn::Min(least, hn::Load(floats, values + i));
         greatest = hn::Max(greatest, hn::Load(floats, values + i));
-    return hn::GetLane(hn::MaxOfLanes(floats, greatest));
+    }
+    return {hn::GetLane(hn::MinOfLanes(floats, least)),
+            hn::GetLane(hn::MaxOfLanes(floats, greatest))};
 }
 
 /// Of each group, and from those of fewer groups of more.
@@ -337,9 +336,8 @@ HWY_NOINLINE void set_bounds(Walk& walk) {
     constexpr int kGroups = kMaxTexels / 8;
     std::fill_n(walk.bounds[0], 4, std::numeric_limits<float>::max());
     for (int group = 0; group < kGroups; ++group) {
-        const float* const s = walk.tile.s + 8 * group;
-        const float* const t = walk.tile.t + 8 * group;
-        const float own[4] = {least_of(s), least_of(t), -greatest_of(s), -greatest_of(t)};
+        const Ends s = ends_of(walk.tile.s + 8 * group), t = ends_of(walk.tile.t + 8 * group);
+        const float own[4] = {s.least, t.least, -s.greatest, -t.greatest};
         const int others = 4 << group;
         const float* const from = walk.bounds[0];
         float* const to = walk.bounds[1 << group];
